@@ -1,0 +1,1 @@
+"""From a checked spec to a program: named passes, each a file, listed in `compile.py`."""

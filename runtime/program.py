@@ -1,0 +1,308 @@
+"""The program: what the compiler emits, the runtime runs and the verifier reads.
+
+All numbers in a program are in coherent SI units; a `Unit` only says how people read a quantity.
+Every part carries `origin`, the place `file:line:column` in the user's YAML that it came from, so
+that a finding at the very end still points into the spec.
+
+The *register* of a program is the vector of everything that its code may read, in this order:
+states (n), controls (p), constants (c). `Program.register` names its entries.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import final
+
+from runtime.arrays import Array
+from runtime.code import Code
+
+
+@final
+class Role(StrEnum):
+    """How a behavior relates to a state variable (thesis, section 3.2.2)."""
+
+    SENSED = "sensed"
+    DRIVEN = "driven"
+    BOTH = "both"
+
+
+@final
+class Kind(StrEnum):
+    """What values a state variable takes."""
+
+    CONTINUOUS = "continuous"
+    PERIODIC = "periodic"
+    DISCRETE = "discrete"
+
+
+@final
+class Method(StrEnum):
+    """How a table is interpolated between its nodes."""
+
+    LINEAR = "linear"
+    CUBIC = "cubic"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit as the user wrote it; `scale` is the SI value of one of it."""
+
+    text: str
+    scale: float
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class State:
+    """A state variable. A periodic one has the period `high - low`.
+
+    A discrete one has `values` (names); its numbers are their indices 0, 1, ...
+    `closure` is the rate (for a step map: the next value) that the author assumes for a
+    sensed-only variable when the behavior runs alone; without one it is held at `hold`.
+    """
+
+    name: str
+    unit: Unit
+    low: float
+    high: float
+    role: Role
+    kind: Kind
+    hold: float
+    closure: Code | None
+    values: tuple[str, ...]
+    relates: tuple[str, str]
+    about: str
+    origin: str
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the field gives a rate for this variable."""
+        return self.role is not Role.SENSED
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A control parameter, set from outside the behavior (thesis, section 3.2.1)."""
+
+    name: str
+    unit: Unit
+    low: float
+    high: float
+    default: float
+    about: str
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A named number of the spec; `fit` may refit it."""
+
+    name: str
+    unit: Unit
+    value: float
+    about: str
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Output:
+    """An output parameter: an expression of the register."""
+
+    name: str
+    unit: Unit
+    code: Code
+    about: str
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of a table: `count` evenly spaced nodes over [low, high].
+
+    A periodic axis has its nodes at `low + i * (high - low) / count`, i = 0 .. count - 1; the
+    value at `high` is that at `low`.
+    """
+
+    name: str
+    low: float
+    high: float
+    count: int
+    periodic: bool
+
+    @property
+    def step(self) -> float:
+        """The distance between two nodes."""
+        return (self.high - self.low) / (self.count if self.periodic else self.count - 1)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Table:
+    """Interpolation coefficients over a regular grid, vector-valued.
+
+    coefficients: (k1, ..., kd, m), m columns that share index and weights. What k is per axis
+    (n nodes): linear n, or n + 1 where periodic; cubic (uniform B-spline) n + 2, or n + 3 where
+    periodic, the first ones repeated at the end. `runtime.interpolation` makes and reads them.
+    """
+
+    axes: tuple[Axis, ...]
+    method: Method
+    coefficients: Array
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Term:
+    """`coefficient(register) * tables[table][column]`, added to the rate of `driven[component]`.
+
+    The coefficient reads only controls, constants and discrete states.
+    """
+
+    component: int
+    coefficient: Code
+    table: int
+    column: int
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class ErrorBound:
+    """How far the tables are from the field itself, for one driven variable, in its rate's unit.
+
+    `measured` is the largest difference seen on `points` random points that did not choose the
+    nodes, with a margin: an estimate, not a proof.
+    """
+
+    measured: float
+    tolerance: float
+    points: int
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Field:
+    """The vector field: rates (SI per second) of the driven states, in the order of the states.
+
+    form: formula, arrows, grid, module or step. For `step` the field gives the *next value* of
+    each driven state, `every` seconds later; otherwise `every` is 0.
+    tables, terms: the interpolated field; empty where it stays as code.
+    formula: the field's own expressions, one per driven state, where the form has them.
+    """
+
+    driven: tuple[str, ...]
+    form: str
+    every: float
+    tables: tuple[Table, ...]
+    terms: tuple[Term, ...]
+    bounds: tuple[ErrorBound, ...]
+    formula: tuple[Code, ...] | None
+    origin: str
+
+    @property
+    def is_map(self) -> bool:
+        """Whether the field is a discrete-time map."""
+        return self.every > 0.0
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """Where a variable stands in a log: `value = scale * raw * unit.scale + offset`.
+
+    The measurement at log time t speaks of time `t - delay`. `path` is empty and `constant` set
+    for a variable that was not logged and is declared constant. `values` maps texts of a
+    discrete variable or signal to indices.
+    """
+
+    name: str
+    path: str
+    unit: Unit
+    delay: float
+    scale: float
+    offset: float
+    constant: float | None
+    values: tuple[str, ...]
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Fidelity:
+    """What "the robot does this" means: SI tolerances at the horizon, and where it must be seen."""
+
+    tolerance: dict[str, float]
+    horizon: float
+    region: dict[str, tuple[float, float]]
+    coverage: float
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Realization:
+    """The channel of a body that a driven variable acts on, and as what."""
+
+    variable: str
+    channel: str
+    mode: str
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Feasibility:
+    """What is known of whether a real robot can do this (thesis, section 2.3, caveat 3)."""
+
+    level: str
+    evidence: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """The spec that a program was compiled from."""
+
+    file: str
+    text: str
+    sha256: str
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Program:
+    """A compiled behavior.
+
+    bindings: one for each state and control that the log holds or the spec declares constant,
+    and for each further signal that `judge_when` reads (the names that are neither state,
+    control, constant nor output).
+    judge_when: over register entries and signals; non-zero where the behavior had its way.
+    """
+
+    name: str
+    about: str
+    states: tuple[State, ...]
+    controls: tuple[Control, ...]
+    constants: tuple[Constant, ...]
+    outputs: tuple[Output, ...]
+    field: Field
+    fidelity: Fidelity | None
+    bindings: tuple[Binding, ...]
+    judge_when: Code | None
+    realizes: tuple[Realization, ...]
+    feasibility: Feasibility | None
+    source: Origin
+
+    @property
+    def register(self) -> tuple[str, ...]:
+        """The names of everything that code may read: states, controls, constants."""
+        named = (*self.states, *self.controls, *self.constants)
+        return tuple(part.name for part in named)
+
+    @property
+    def driven(self) -> tuple[int, ...]:
+        """Indices of the driven states."""
+        return tuple(i for i, state in enumerate(self.states) if state.is_driven)

@@ -1,0 +1,131 @@
+"""What is wrong, where, by which rule, and what to write instead: data first, text last."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import final
+
+from spec_schema.source import Source, Span
+
+
+@final
+class Severity(StrEnum):
+    """Whether a diagnostic stops the compiler."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding. `path` is in the notation `$.fields[0].gain`; `label` stands after the carets.
+
+    `span` is None where a file as a whole is meant.
+    """
+
+    code: str
+    severity: Severity
+    message: str
+    source: Source
+    span: Span | None
+    path: str = ""
+    help: str = ""
+    label: str = ""
+
+    @property
+    def place(self) -> str:
+        """`file:line:column`, as editors and CI understand it."""
+        if self.span is None:
+            return self.source.name
+        return f"{self.source.name}:{self.span.line}:{self.span.column}"
+
+    def as_json(self) -> dict[str, object]:
+        """The flat record that `specc check --format json` prints."""
+        span = self.span or Span(1, 1, 1, 1)
+        return {
+            "code": self.code,
+            "severity": str(self.severity),
+            "message": self.message,
+            "file": self.source.name,
+            "line": span.line,
+            "column": span.column,
+            "end_line": span.end_line,
+            "end_column": span.end_column,
+            "path": self.path,
+            "help": self.help,
+        }
+
+
+@final
+class SpecError(Exception):
+    """A user's text that can't be used, with everything that is wrong with it."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics = in_file_order(diagnostics)
+        super().__init__(render(self.diagnostics))
+
+
+def in_file_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Sorted by file, place and code, without repetitions."""
+    nowhere = Span(0, 0, 0, 0)
+    return tuple(
+        sorted(set(diagnostics), key=lambda d: (d.source.name, d.span or nowhere, d.code, d.message))
+    )
+
+
+def render(diagnostics: Iterable[Diagnostic]) -> str:
+    """All diagnostics as text for people, with a last line that counts them."""
+    found = in_file_order(diagnostics)
+    if not found:
+        return ""
+    return "\n\n".join([*map(render_one, found), summary(found)])
+
+
+def render_one(diagnostic: Diagnostic) -> str:
+    """One diagnostic: the place and the message, the line with carets, the path, the help."""
+    head = f"{diagnostic.place}: {diagnostic.severity}[{diagnostic.code}]: {diagnostic.message}"
+    lines = [head, *_excerpt(diagnostic)]
+    margin = " " * _gutter(diagnostic)
+    if diagnostic.path:
+        lines.append(f"{margin}= at: {diagnostic.path}")
+    if diagnostic.help:
+        first, *more = diagnostic.help.splitlines()
+        lines.append(f"{margin}= help: {first}")
+        lines.extend(f"{margin}        {line}" for line in more)
+    return "\n".join(lines)
+
+
+def summary(diagnostics: Iterable[Diagnostic]) -> str:
+    """`2 errors and 1 warning in specs/reach.yaml`."""
+    found = tuple(diagnostics)
+    counts = [
+        _count(sum(d.severity is severity for d in found), str(severity))
+        for severity in Severity
+        if any(d.severity is severity for d in found)
+    ]
+    files = sorted({d.source.name for d in found})
+    where = files[0] if len(files) == 1 else f"{len(files)} files"
+    return f"{' and '.join(counts)} in {where}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def _gutter(diagnostic: Diagnostic) -> int:
+    return len(str(diagnostic.span.line)) + 1 if diagnostic.span else 2
+
+
+def _excerpt(diagnostic: Diagnostic) -> list[str]:
+    span = diagnostic.span
+    if span is None:
+        return []
+    text = diagnostic.source.line(span.line)
+    last = span.end_column if span.end_line == span.line else len(text) + 1
+    carets = "^" * max(1, last - span.column)
+    # Tabs keep their width under the carets, so the carets stay below what they mean.
+    indent = "".join("\t" if c == "\t" else " " for c in text[: span.column - 1].ljust(span.column - 1))
+    margin = " " * _gutter(diagnostic)
+    label = f" {diagnostic.label}" if diagnostic.label else ""
+    return [f"{margin}|", f"{span.line} | {text}", f"{margin}| {indent}{carets}{label}"]

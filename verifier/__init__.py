@@ -1,0 +1,1 @@
+"""The judge: traces read honestly, fidelity measured, topology computed; numbers, no pictures."""

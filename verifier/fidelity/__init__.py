@@ -1,0 +1,1 @@
+"""Does the robot do what the spec says? Prediction, noise, judgement, coverage."""

@@ -1,0 +1,1 @@
+"""Fixed points, nullclines and trajectories of a compiled field, as numbers."""

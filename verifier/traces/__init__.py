@@ -1,0 +1,1 @@
+"""Logs of every kind, read into one `Trace`, with every loss counted."""

@@ -1,0 +1,50 @@
+"""A trace: what was measured, in SI units, with every loss counted."""
+
+from dataclasses import dataclass
+from typing import final
+
+from runtime.arrays import Array
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Series:
+    """One measured quantity: `times` (T,) seconds, strictly increasing; `values` (T,) SI.
+
+    Angles of periodic states are unwrapped. `delay`, `scale`, `offset` and the unit of the
+    binding are already applied. `clock` says which stamp the times are: `sensor` or `log`.
+    """
+
+    name: str
+    times: Array
+    values: Array
+    path: str
+    clock: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """Something in the log that could not be used: its cause, how often, and where."""
+
+    cause: str
+    count: int
+    detail: str
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Trace:
+    """A log, read for one program: a series for each variable that it holds.
+
+    constants: SI values of variables that the spec declares constant instead of logged.
+    start: the time of the first sample, seconds since the epoch of the log's clock; the times
+    of all series count from it.
+    """
+
+    source: str
+    series: dict[str, Series]
+    constants: dict[str, float]
+    start: float
+    losses: tuple[Loss, ...]
+    notes: tuple[str, ...]
