@@ -1,0 +1,1 @@
+"""Compiled kernels. They use nothing of ours from outside this folder: its sources key their cache."""
