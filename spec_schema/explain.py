@@ -1,0 +1,134 @@
+"""Pydantic's findings in our words: a code, a sentence, what to write, and where to point."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic_core import ErrorDetails
+
+from spec_schema.mistake import TYPE, Mistake, carried
+from spec_schema.model_walk import choices_at, example_at, keys_at
+from spec_schema.places import Path
+from spec_schema.suggest import did_you_mean, nearest
+from spec_schema.wording import as_yaml, described, number, quoted
+
+KINDS = ("behavior", "project")
+"""What a spec file can describe."""
+
+_WANTED = {
+    "string_type": "text",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "bool_type": "true or false",
+    "tuple_type": "a list",
+    "mapping_type": "a mapping",
+    "dict_type": "a mapping",
+    "model_type": "a mapping",
+    "model_attributes_type": "a mapping",
+}
+_BOUNDS = {
+    "greater_than": ("gt", "more than"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "less than"),
+    "less_than_equal": ("le", "at most"),
+}
+
+
+def mistakes_of(model: type[BaseModel], error: ErrorDetails) -> Iterator[Mistake]:
+    """The mistakes behind one of pydantic's errors; `at` counts from the document."""
+    path: Path = error["loc"]
+    at_key = bool(path) and path[-1] == "[key]"
+    if at_key:
+        path = path[:-1]
+    context: dict[str, Any] = error.get("ctx", {})
+    if error["type"] == TYPE:
+        for found in carried(context):
+            where = (*path, *found.at)
+            yield Mistake(found.code, found.message, found.help, where, found.on_key or at_key)
+        return
+    yield _mistake(model, error["type"], path, error["input"], context) or Mistake(
+        "S103", f"{error['msg'][:1].lower()}{error['msg'][1:]}", "", path
+    )
+
+
+def _mistake(
+    model: type[BaseModel], kind: str, path: Path, got: Any, context: dict[str, Any]
+) -> Mistake | None:
+    """One of pydantic's own errors; None for a type that no model of ours can cause."""
+    if kind == "missing":
+        return _missing(model, path)
+    if kind == "extra_forbidden":
+        return unknown_key(model, path)
+    if kind == "literal_error":
+        return _unknown_word(model, path, got)
+    if kind in _WANTED:
+        return _wrong_type(model, kind, path, got)
+    if kind in ("too_short", "too_long"):
+        return _wrong_length(model, path, got)
+    if kind in _BOUNDS:
+        key, words = _BOUNDS[kind]
+        message = f"{_last_name(path)} must be {words} {number(context[key])} (got {number(got)})"
+        return Mistake("S106", message, _write(model, path), path)
+    return None
+
+
+def unknown_key(model: type[BaseModel], path: Path) -> Mistake:
+    """The key at `path` is not one of the language."""
+    word = str(path[-1])
+    known = keys_at(model, path[:-1])
+    remedy = did_you_mean(word, known) or f"the keys here are: {', '.join(known)}"
+    return Mistake("S102", f"unknown key {quoted(word)}", remedy, path, on_key=True)
+
+
+def meant_key(model: type[BaseModel], path: Path) -> str | None:
+    """The key that the unknown one at `path` was probably meant to be."""
+    return nearest(str(path[-1]), keys_at(model, path[:-1]))
+
+
+def empty_value(model: type[BaseModel], path: Path) -> Mistake:
+    """A key stands at `path` with nothing after it."""
+    return Mistake("S110", f"{quoted(str(path[-1]))} has no value", _write(model, path), path)
+
+
+def _missing(model: type[BaseModel], path: Path) -> Mistake:
+    message = f"{quoted(str(path[-1]))} is missing"
+    return Mistake("S101", message, _write(model, path, "add"), path[:-1])
+
+
+def _unknown_word(model: type[BaseModel], path: Path, got: Any) -> Mistake:
+    known = KINDS if path == ("kind",) else choices_at(model, path)
+    what = str(path[-1])
+    if not isinstance(got, str):
+        return Mistake(
+            "S103", f"expected one of {', '.join(known)}, got {described(got)}", "", path
+        )
+    likely = did_you_mean(got, known)
+    remedy = f"{likely}\n" if likely else ""
+    message = f"unknown {what} {quoted(got)}"
+    return Mistake("S104", message, f"{remedy}expected one of: {', '.join(known)}", path)
+
+
+def _wrong_type(model: type[BaseModel], kind: str, path: Path, got: Any) -> Mistake:
+    message = f"expected {_WANTED[kind]}, got {described(got)}"
+    if kind == "string_type" and isinstance(got, bool | int | float):
+        return Mistake("S103", message, f'put it in quotes: "{described(got).split()[-1]}"', path)
+    return Mistake("S103", message, _write(model, path), path)
+
+
+def _wrong_length(model: type[BaseModel], path: Path, got: Any) -> Mistake:
+    what = "mapping" if isinstance(got, dict) else "list"
+    return Mistake("S110", f"{_last_name(path)} is an empty {what}", _write(model, path), path)
+
+
+def _last_name(path: Path) -> str:
+    names = [step for step in path if isinstance(step, str)]
+    return quoted(names[-1]) if names else "the document"
+
+
+def _write(model: type[BaseModel], path: Path, verb: str = "write") -> str:
+    """What to write, by an example; nothing where the models show none."""
+    example = example_at(model, path)
+    if example is None:
+        return ""
+    return f"{verb} e.g. '{path[-1]}: {as_yaml(example)}'"

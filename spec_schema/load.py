@@ -1,0 +1,146 @@
+"""A spec file, read and checked as far as it can be by itself: the one way to load a spec."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path as FilePath
+from typing import TypeAlias, final
+
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.characters import LARGEST, decode, too_large
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError, in_file_order
+from spec_schema.explain import KINDS
+from spec_schema.mistake import Mistake
+from spec_schema.node import Plain, plain
+from spec_schema.places import Path, Places, dotted
+from spec_schema.project import ProjectSpec
+from spec_schema.shape import check_shape
+from spec_schema.source import Source, Span
+from spec_schema.suggest import did_you_mean, nearest
+from spec_schema.yaml_reader import read
+
+AnySpec: TypeAlias = BehaviorSpec | ProjectSpec
+MOST = 100
+"""How many mistakes of one file are listed."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A spec, its text, and where everything in it stands."""
+
+    source: Source
+    spec: AnySpec
+    places: Places
+
+    def error(
+        self,
+        code: str,
+        path: Path,
+        message: str,
+        help: str = "",  # noqa: A002  # the word of the format
+        label: str = "",
+        within: tuple[int, int] | None = None,
+        *,
+        key: bool = False,
+    ) -> Diagnostic:
+        """An error at the value of `path`, at its key, or at characters `within` its text."""
+        span = _span(self.places, path, within, key=key)
+        return Diagnostic(
+            code, Severity.ERROR, message, self.source, span, self.places.dotted(path), help, label
+        )
+
+    def warning(
+        self,
+        code: str,
+        path: Path,
+        message: str,
+        help: str = "",  # noqa: A002  # the word of the format
+        label: str = "",
+        within: tuple[int, int] | None = None,
+        *,
+        key: bool = False,
+    ) -> Diagnostic:
+        """A warning, placed like an error."""
+        return replace(
+            self.error(code, path, message, help, label, within, key=key),
+            severity=Severity.WARNING,
+        )
+
+    def origin(self, path: Path) -> str:
+        """`file:line:column` of the key at `path`, for the parts of a program."""
+        return self.places.origin(path)
+
+
+def load(path: FilePath) -> Loaded:
+    """Read and check a spec file; raises SpecError with everything that is wrong."""
+    name = str(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
+    except OSError as error:
+        raise SpecError([_unreadable(path, error)]) from error
+    if len(data) > LARGEST:
+        raise SpecError([too_large(Source(name, ""), path.stat().st_size)])
+    source, problems = decode(name, data)
+    if problems:
+        raise SpecError(problems)
+    return load_source(source)
+
+
+def load_source(source: Source) -> Loaded:
+    """Check a spec's text; raises SpecError with everything that is wrong."""
+    root = read(source)
+    places = Places(source, root)
+    data = {name: plain(entry.value) for name, entry in root.entries.items()}
+    shape = check_shape(_model_of(data), data)
+    if shape.spec is None:
+        raise SpecError(_listed([_diagnostic(places, mistake) for mistake in shape.mistakes]))
+    return Loaded(source, shape.spec, places)
+
+
+def _model_of(data: dict[str, Plain]) -> type[AnySpec]:
+    """The model that the document is meant for, even where it does not say so."""
+    kind = data.get("kind")
+    meant = nearest(kind, KINDS) if isinstance(kind, str) else None
+    is_project = meant == "project" or (meant is None and {"specs", "traces"} & data.keys())
+    return ProjectSpec if is_project else BehaviorSpec
+
+
+def _diagnostic(places: Places, mistake: Mistake) -> Diagnostic:
+    span, label = _span(places, mistake.at, None, key=mistake.on_key), ""
+    if mistake.code == "S101":
+        span = places.value(mistake.at)
+        span, label = Span(span.line, span.column, span.line, span.column + 1), "in this mapping"
+    at = dotted(places.written(mistake.at))
+    return Diagnostic(
+        mistake.code, Severity.ERROR, mistake.message, places.source, span, at, mistake.help, label
+    )
+
+
+def _span(places: Places, path: Path, within: tuple[int, int] | None, *, key: bool) -> Span:
+    if within is not None:
+        return places.within(path, *within)
+    return places.key(path) if key else places.value(path)
+
+
+def _listed(diagnostics: list[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """The first mistakes in file order, and how many more there are."""
+    found = in_file_order(diagnostics)
+    if len(found) <= MOST:
+        return found
+    message = f"{len(found) - MOST} more mistakes from here on are not listed"
+    return (
+        *found[:MOST],
+        replace(found[MOST], code="S016", message=message, path="", help="", label=""),
+    )
+
+
+def _unreadable(path: FilePath, error: OSError) -> Diagnostic:
+    if isinstance(error, FileNotFoundError):
+        message = "there is no such file"
+        beside = [p.name for p in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+        remedy = did_you_mean(path.name, sorted(beside))
+    elif isinstance(error, IsADirectoryError):
+        message, remedy = "this is a folder, not a file", f"name a file in it: {path}/NAME.yaml"
+    else:
+        message, remedy = f"the file can't be read: {error.strerror}", ""
+    return Diagnostic("S015", Severity.ERROR, message, Source(str(path), ""), None, help=remedy)

@@ -1,0 +1,100 @@
+"""From a path in the data (`("field", "formula", "x")`) to a place in the text."""
+
+import re
+from dataclasses import dataclass
+from typing import TypeAlias, final
+
+from spec_schema.node import Entry, Listing, Mapping, Node, Scalar
+from spec_schema.source import Source, Span
+from spec_schema.wording import quoted
+
+Path: TypeAlias = tuple[str | int, ...]
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
+_QUOTES = ('"', "'")
+
+
+def dotted(path: Path) -> str:
+    """The path in the notation of the diagnostics.
+
+    >>> dotted(("arrows", "sketch", 0, "at", 1)), dotted(("traces", "*.mcap"))
+    ('$.arrows.sketch[0].at[1]', "$.traces['*.mcap']")
+    """
+    return "$" + "".join(map(_step, path))
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Places:
+    """The places of all keys and values of one document.
+
+    A path that goes further than what is written means the last thing that is written.
+    """
+
+    source: Source
+    root: Node
+
+    def value(self, path: Path) -> Span:
+        """Where the value stands; for an empty one, its key."""
+        return self._walk(path)[1].span
+
+    def key(self, path: Path) -> Span:
+        """Where the key stands; for an item of a list, the item."""
+        entry, node, _ = self._walk(path)
+        return entry.key if entry else node.span
+
+    def written(self, path: Path) -> Path:
+        """The longest beginning of `path` that stands in the text."""
+        return path[: self._walk(path)[2]]
+
+    def within(self, path: Path, start: int, end: int) -> Span:
+        """Where the characters `start` to `end` of a text stand.
+
+        The whole value where the text on the page is not the text that was read: several lines,
+        escapes, or a number.
+        """
+        node = self._walk(path)[1]
+        offset = self._offset(node)
+        if offset is None or not 0 <= start <= end <= node.span.end_column - node.span.column:
+            return node.span
+        line, column = node.span.line, node.span.column + offset
+        return Span(line, column + start, line, column + max(end, start + 1))
+
+    def dotted(self, path: Path) -> str:
+        """The path in the notation of the diagnostics."""
+        return dotted(path)
+
+    def origin(self, path: Path) -> str:
+        """`file:line:column` of the key, else of the item."""
+        span = self.key(path)
+        return f"{self.source.name}:{span.line}:{span.column}"
+
+    def _walk(self, path: Path) -> tuple[Entry | None, Node, int]:
+        entry: Entry | None = None
+        node = self.root
+        for depth, step in enumerate(path):
+            match node:
+                case Mapping() if step in node.entries:
+                    entry = node.entries[str(step)]
+                    node = entry.value
+                case Listing() if isinstance(step, int) and 0 <= step < len(node.items):
+                    entry = None
+                    node = node.items[step]
+                case _:
+                    return entry, node, depth
+        return entry, node, len(path)
+
+    def _offset(self, node: Node) -> int | None:
+        """How many characters precede the text in its span; None where they differ."""
+        if not isinstance(node, Scalar) or node.span.line != node.span.end_line:
+            return None
+        shown = self.source.line(node.span.line)[node.span.column - 1 : node.span.end_column - 1]
+        if shown == node.text:
+            return 0
+        return 1 if shown in [f"{quote}{node.text}{quote}" for quote in _QUOTES] else None
+
+
+def _step(part: str | int) -> str:
+    if isinstance(part, int):
+        return f"[{part}]"
+    return f".{part}" if _WORD.fullmatch(part) else f"[{quoted(part)}]"

@@ -1,0 +1,103 @@
+"""The shape of a document against its model: all mistakes in one go.
+
+Pydantic stops at a mapping whose keys are wrong: its own rules are not looked at. So a misspelt key
+is taken for what it was probably meant to be, and the document checked again.
+"""
+
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar, final
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from spec_schema.explain import empty_value, meant_key, mistakes_of, unknown_key
+from spec_schema.mistake import Mistake
+from spec_schema.node import Plain
+from spec_schema.places import Path
+
+_ROUNDS = 6
+"""A round of repair makes the inside of misspelt keys visible: one level of nesting each."""
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Shape(Generic[Model]):
+    """The model of a document, or why there is none."""
+
+    spec: Model | None
+    mistakes: tuple[Mistake, ...]
+
+
+def check_shape(model: type[Model], data: dict[str, Plain]) -> Shape[Model]:
+    """Check `data`, which is changed on the way, against the model."""
+    repairs = _Repairs(model, data)
+    for _ in range(_ROUNDS):
+        try:
+            spec = model.model_validate(data)
+        except ValidationError as error:
+            errors = error.errors(include_url=False)
+            unknown = [found["loc"] for found in errors if found["type"] == "extra_forbidden"]
+            if not unknown:
+                return Shape(None, repairs.all_mistakes(errors))
+            for path in unknown:
+                repairs.repair(path)
+        else:
+            found = repairs.all_mistakes([])
+            return Shape(None if found else spec, found)
+    return Shape(None, repairs.all_mistakes([]))
+
+
+@final
+@dataclass(slots=True)
+class _Repairs(Generic[Model]):
+    """The document as it was probably meant, and how its keys were written."""
+
+    model: type[Model]
+    data: dict[str, Plain]
+    mistakes: list[Mistake] = field(default_factory=list)
+    written: dict[Path, str] = field(default_factory=dict)
+
+    def repair(self, path: Path) -> None:
+        """Rename the unknown key at `path` to the one that was meant, or take it out."""
+        self.mistakes.append(self._as_written(unknown_key(self.model, path)))
+        mapping = _at(self.data, path[:-1])
+        assert isinstance(mapping, dict), "pydantic finds unknown keys in mappings alone"
+        value = mapping.pop(str(path[-1]))
+        meant = meant_key(self.model, path)
+        if meant is not None and meant not in mapping:
+            mapping[meant] = value
+            self.written[(*path[:-1], meant)] = str(path[-1])
+
+    def all_mistakes(self, errors: list[ErrorDetails]) -> tuple[Mistake, ...]:
+        """The mistakes of all rounds; `errors` are those of the last."""
+        empty = _empty_values(self.data, ())
+        found = [m for error in errors for m in mistakes_of(self.model, error) if m.at not in empty]
+        found.extend(empty_value(self.model, path) for path in empty)
+        return (*self.mistakes, *map(self._as_written, found))
+
+    def _as_written(self, mistake: Mistake) -> Mistake:
+        at = tuple(
+            self.written.get(mistake.at[: depth + 1], step) for depth, step in enumerate(mistake.at)
+        )
+        return Mistake(mistake.code, mistake.message, mistake.help, at, mistake.on_key)
+
+
+def _at(data: Plain, path: Path) -> Plain:
+    for step in path:
+        if isinstance(data, dict):
+            data = data[str(step)]
+        elif isinstance(data, list):
+            data = data[int(step)]
+    return data
+
+
+def _empty_values(data: Plain, path: Path) -> list[Path]:
+    """The keys with nothing after them."""
+    if isinstance(data, dict):
+        below = [_empty_values(value, (*path, key)) for key, value in data.items()]
+        return [(*path, key) for key, value in data.items() if value is None] + sum(below, [])
+    if isinstance(data, list):
+        return sum((_empty_values(value, (*path, index)) for index, value in enumerate(data)), [])
+    return []

@@ -1,0 +1,125 @@
+"""A YAML parser's complaint, said again for people: what is missing, where it began, what to write."""
+
+from dataclasses import dataclass
+from typing import TypeAlias, final
+
+from spec_schema.source import Source, Span
+from spec_schema.wording import quoted
+
+Position: TypeAlias = tuple[int, int]
+"""A line and a column, from 1."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Complaint:
+    """What the parser says: the problem, where it noticed, and where the thing at fault began."""
+
+    problem: str
+    noticed: Position
+    began: Position
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What to tell the user."""
+
+    message: str
+    span: Span
+    help: str
+    label: str = ""
+
+
+def explain(complaint: Complaint, source: Source) -> Explanation:
+    """The complaint of either of PyYAML's parsers (they word it differently) in our words."""
+    problem = complaint.problem
+    here = _character(source, complaint.noticed)
+    if "',' or" in problem:
+        return _unclosed_bracket(complaint, source)
+    if "end of stream" in problem or "document separator" in problem:
+        return Explanation(
+            "the quote that opens here is never closed",
+            _character(source, complaint.began),
+            "close the text with the same quote",
+        )
+    if "mapping values are not allowed" in problem:
+        return Explanation(
+            "a ':' where no key can end",
+            here,
+            "if it belongs to a text, put the text in quotes; "
+            "if it ends a key, indent the key like those beside it",
+        )
+    if "could not find expected ':'" in problem:
+        return Explanation(
+            "a line that is neither 'key: value' nor an item of a list",
+            _rest_of_line(source, complaint.began),
+            "write 'key: value', with a space after the ':'",
+        )
+    if "expected key" in problem or "block end" in problem or "'-' indicator" in problem:
+        return _misplaced(complaint, source)
+    if "cannot start any token" in problem:
+        character = source.line(here.line)[here.column - 1 :][:1]
+        return Explanation(
+            f"no value can start with {quoted(character)}", here, "put the text in quotes"
+        )
+    if "escape" in problem or "hexdecimal" in problem or "hexadecimal" in problem:
+        return Explanation(
+            "a backslash in double quotes starts an escape, and this is none",
+            here,
+            "write \\\\ for a backslash, or use single quotes",
+        )
+    if "node content" in problem:
+        return Explanation("a value is expected here", here, "write a value, or put text in quotes")
+    return Explanation(f"this can't be read as YAML: {problem}", here, "put text in quotes")
+
+
+def _unclosed_bracket(complaint: Complaint, source: Source) -> Explanation:
+    span = _character(source, complaint.began)
+    opened = source.line(span.line)[span.column - 1 :][:1]
+    kind, closing = ("mapping", "}") if opened == "{" else ("list", "]")
+    line, column = complaint.noticed
+    return Explanation(
+        f"the {kind} that opens here lacks its '{closing}', or a ',' between two entries",
+        span,
+        f"noticed in line {line}, column {column}; write '{closing}' or ',' before it",
+    )
+
+
+def _misplaced(complaint: Complaint, source: Source) -> Explanation:
+    line, column = complaint.began
+    noticed_line, noticed_column = complaint.noticed
+    before = source.line(noticed_line)[: noticed_column - 1].strip()
+    span = _rest_of_line(source, complaint.noticed)
+    if before:
+        return Explanation(
+            f"nothing can follow {quoted(before[-1])} on this line",
+            span,
+            "put the whole value in quotes, or begin a new line",
+        )
+    what = (
+        "an item of the list"
+        if source.line(line)[column - 1 :][:1] == "-"
+        else "a key of the mapping"
+    )
+    return Explanation(
+        f"{what} above is expected here, and this is none",
+        span,
+        f"what belongs together starts in one column: here column {column}, as in line {line}",
+    )
+
+
+def _character(source: Source, at: Position) -> Span:
+    """The character at a position; where the file ends before it, the last one there is."""
+    line, column = at
+    while line > 1 and not source.line(line):
+        line -= 1
+        column = len(source.line(line))
+    column = max(1, min(column, len(source.line(line))))
+    return Span(line, column, line, column + 1)
+
+
+def _rest_of_line(source: Source, at: Position) -> Span:
+    start = _character(source, at)
+    text = source.line(start.line)[start.column - 1 :].split(" #")[0].rstrip()
+    return Span(start.line, start.column, start.line, start.column + max(1, len(text)))
