@@ -1,0 +1,1 @@
+"""Expressions: a small safe language as checked trees, without evaluation of the user's text."""
