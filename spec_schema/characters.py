@@ -67,7 +67,7 @@ def _control_characters(source: Source) -> Iterator[Diagnostic]:
     found = [match.start() for match in _FORBIDDEN.finditer(source.text)]
     if found:
         code = ord(source.text[found[0]])
-        message = f"the character U+{code:04X}{_more(len(found))} can't be seen, and can't stand in a spec"
+        message = f"the character U+{code:04X}{_more(len(found))} can't stand in a spec"
         help_ = (
             f'remove it; in a text in double quotes, write "\\u{code:04x}"'
             if code < 2**16

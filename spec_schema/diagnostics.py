@@ -4,8 +4,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import final
+from unicodedata import combining, east_asian_width
 
 from spec_schema.source import Source, Span
+
+WIDEST = 100
+"""How many characters of a line are shown at most."""
 
 
 @final
@@ -69,9 +73,11 @@ class SpecError(Exception):
 def in_file_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Sorted by file, place and code, without repetitions."""
     nowhere = Span(0, 0, 0, 0)
-    return tuple(
-        sorted(set(diagnostics), key=lambda d: (d.source.name, d.span or nowhere, d.code, d.message))
-    )
+
+    def place(d: Diagnostic) -> tuple[str, Span, str, str]:
+        return d.source.name, d.span or nowhere, d.code, d.message
+
+    return tuple(sorted(set(diagnostics), key=place))
 
 
 def render(diagnostics: Iterable[Diagnostic]) -> str:
@@ -122,10 +128,44 @@ def _excerpt(diagnostic: Diagnostic) -> list[str]:
     if span is None:
         return []
     text = diagnostic.source.line(span.line)
-    last = span.end_column if span.end_line == span.line else len(text) + 1
-    carets = "^" * max(1, last - span.column)
-    # Tabs keep their width under the carets, so the carets stay below what they mean.
-    indent = "".join("\t" if c == "\t" else " " for c in text[: span.column - 1].ljust(span.column - 1))
+    start = span.column - 1
+    end = span.end_column - 1 if span.end_line == span.line else len(text)
+    shown = _window(text, start, end)
+    indent = " " * _width(shown.before)
+    carets = "^" * max(1, _width(shown.meant))
     margin = " " * _gutter(diagnostic)
     label = f" {diagnostic.label}" if diagnostic.label else ""
-    return [f"{margin}|", f"{span.line} | {text}", f"{margin}| {indent}{carets}{label}"]
+    line = f"{shown.before}{shown.meant}{shown.after}".rstrip()
+    return [f"{margin}|", f"{span.line} | {line}".rstrip(), f"{margin}| {indent}{carets}{label}"]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Window:
+    """The part of a line that is shown: what is meant, and what stands around it."""
+
+    before: str
+    meant: str
+    after: str
+
+
+def _window(text: str, start: int, end: int) -> _Window:
+    """At most `WIDEST` characters of a line around those that are meant."""
+    first = 0 if len(text) <= WIDEST or start <= WIDEST // 2 else start - WIDEST // 4
+    last = first + WIDEST
+    before, meant, after = text[first:start], text[start : min(end, last)], text[end:last]
+    return _Window(
+        _visible(f"…{before}" if first else before),
+        _visible(meant),
+        _visible(f"{after}…" if last < len(text) else after),
+    )
+
+
+def _visible(text: str) -> str:
+    """The text with nothing in it that moves a terminal's cursor."""
+    return "".join(c if c.isprintable() else " " if c == "\t" else "�" for c in text)
+
+
+def _width(text: str) -> int:
+    """How many columns of a terminal the text fills."""
+    return sum(0 if combining(c) else 2 if east_asian_width(c) in {"W", "F"} else 1 for c in text)

@@ -56,21 +56,20 @@ def _mistake(
     model: type[BaseModel], kind: str, path: Path, got: Any, context: dict[str, Any]
 ) -> Mistake | None:
     """One of pydantic's own errors; None for a type that no model of ours can cause."""
+    found: Mistake | None = None
     if kind == "missing":
-        return _missing(model, path)
-    if kind == "extra_forbidden":
-        return unknown_key(model, path)
-    if kind == "literal_error":
-        return _unknown_word(model, path, got)
-    if kind in _WANTED:
-        return _wrong_type(model, kind, path, got)
-    if kind in ("too_short", "too_long"):
-        return _wrong_length(model, path, got)
-    if kind in _BOUNDS:
-        key, words = _BOUNDS[kind]
-        message = f"{_last_name(path)} must be {words} {number(context[key])} (got {number(got)})"
-        return Mistake("S106", message, _write(model, path), path)
-    return None
+        found = _missing(model, path)
+    elif kind == "extra_forbidden":
+        found = unknown_key(model, path)
+    elif kind == "literal_error":
+        found = _unknown_word(model, path, got)
+    elif kind in _WANTED:
+        found = _wrong_type(model, kind, path, got)
+    elif kind in {"too_short", "too_long"}:
+        found = _wrong_length(model, path, got)
+    elif kind in _BOUNDS:
+        found = _out_of_bounds(model, kind, path, got, context)
+    return found
 
 
 def unknown_key(model: type[BaseModel], path: Path) -> Mistake:
@@ -119,6 +118,14 @@ def _wrong_type(model: type[BaseModel], kind: str, path: Path, got: Any) -> Mist
 def _wrong_length(model: type[BaseModel], path: Path, got: Any) -> Mistake:
     what = "mapping" if isinstance(got, dict) else "list"
     return Mistake("S110", f"{_last_name(path)} is an empty {what}", _write(model, path), path)
+
+
+def _out_of_bounds(
+    model: type[BaseModel], kind: str, path: Path, got: float, context: dict[str, Any]
+) -> Mistake:
+    key, words = _BOUNDS[kind]
+    message = f"{_last_name(path)} must be {words} {number(context[key])}, not {number(got)}"
+    return Mistake("S106", message, _write(model, path), path)
 
 
 def _last_name(path: Path) -> str:

@@ -17,7 +17,7 @@ from spec_schema.value_types import (
     StrictModel,
     Text,
 )
-from spec_schema.wording import listed, quoted
+from spec_schema.wording import counted, listed, quoted
 
 Vector: TypeAlias = Annotated[tuple[Number, ...], Strict(strict=False), Field(min_length=1)]
 
@@ -84,12 +84,10 @@ class Arrows(StrictModel):
             lengths = [("at", arrow.at, "over", self.over), ("go", arrow.go, "drives", self.drives)]
             for key, vector, names_key, names in lengths:
                 if names is not None and len(vector) != len(names):
-                    yield Mistake(
-                        "S115",
-                        f"'{key}' has {len(vector)} {_numbers(len(vector))} for {len(names)} names in '{names_key}'",
-                        f"write one number each for {listed(names, last='and')}",
-                        ("sketch", index, key),
-                    )
+                    count = counted(len(vector), "number")
+                    message = f"{count} for {counted(len(names), 'name')} in '{names_key}'"
+                    remedy = f"write one number for each of: {', '.join(names)}"
+                    yield Mistake("S115", message, remedy, ("sketch", index, key))
 
 
 @final
@@ -125,7 +123,8 @@ class Grid(StrictModel):
     )
     between: Literal["cubic", "linear"] = Field(
         default="cubic",
-        description="What holds between the nodes: a twice differentiable spline, or straight lines.",
+        description="What holds between the nodes: a twice differentiable spline, or straight "
+        "lines.",
         examples=["linear"],
     )
 
@@ -171,7 +170,9 @@ class Grid(StrictModel):
                 )
             for index in range(1, len(nodes)):
                 if nodes[index] <= nodes[index - 1]:
-                    message = f"the nodes do not increase here: {nodes[index]:g} after {nodes[index - 1]:g}"
+                    message = (
+                        f"the nodes do not increase: {nodes[index]:g} after {nodes[index - 1]:g}"
+                    )
                     yield Mistake("S111", message, "sort them, each once", ("nodes", name, index))
             if len(nodes) < 2:
                 yield Mistake("S115", "an axis has at least two nodes", at=("nodes", name))
@@ -182,10 +183,12 @@ class Grid(StrictModel):
         for name, shape in shapes.items():
             at = ("values", name)
             if len(shape) != len(self.over):
-                message = f"the values have {len(shape)} levels of lists for {len(self.over)} names in 'over'"
+                message = (
+                    f"{counted(len(shape), 'level')} of lists for {counted(len(self.over), 'axis')}"
+                )
                 yield Mistake("S115", message, "one level for each axis, the slowest outside", at)
             elif shape != shapes[first]:
-                message = f"the values of {quoted(name)} are {_size(shape)}, those of {quoted(first)} {_size(shapes[first])}"
+                message = f"{_size(shape)} values here, {_size(shapes[first])} of {quoted(first)}"
                 yield Mistake("S115", message, "all values of a grid stand at the same nodes", at)
             else:
                 yield from self._count_mistakes(shape, at)
@@ -306,10 +309,6 @@ def repeated(names: tuple[str, ...], key: str) -> Iterator[Mistake]:
             yield Mistake(
                 "S112", f"{quoted(name)} stands twice in '{key}'", "remove one", (key, index)
             )
-
-
-def _numbers(count: int) -> str:
-    return "number" if count == 1 else "numbers"
 
 
 def _size(shape: tuple[int, ...]) -> str:

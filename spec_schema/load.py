@@ -37,9 +37,9 @@ class Loaded:
         path: Path,
         message: str,
         help: str = "",  # noqa: A002  # the word of the format
+        *,
         label: str = "",
         within: tuple[int, int] | None = None,
-        *,
         key: bool = False,
     ) -> Diagnostic:
         """An error at the value of `path`, at its key, or at characters `within` its text."""
@@ -54,14 +54,14 @@ class Loaded:
         path: Path,
         message: str,
         help: str = "",  # noqa: A002  # the word of the format
+        *,
         label: str = "",
         within: tuple[int, int] | None = None,
-        *,
         key: bool = False,
     ) -> Diagnostic:
         """A warning, placed like an error."""
         return replace(
-            self.error(code, path, message, help, label, within, key=key),
+            self.error(code, path, message, help, label=label, within=within, key=key),
             severity=Severity.WARNING,
         )
 

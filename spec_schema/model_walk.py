@@ -1,4 +1,4 @@
-"""What the models say about a place: which keys it may have, and an example of what belongs there."""
+"""What the models say about a place: its keys, its words, an example of what belongs there."""
 
 from collections.abc import Mapping
 from types import UnionType

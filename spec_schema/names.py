@@ -3,36 +3,10 @@
 import keyword
 import re
 
+from spec_schema.expressions.tree import FUNCTIONS
+
 PATTERN = r"^[A-Za-z_][A-Za-z0-9_]{0,63}$"
 """Of the names of behaviors and variables."""
-
-FUNCTIONS = frozenset(
-    [
-        "abs",
-        "sign",
-        "min",
-        "max",
-        "clip",
-        "sqrt",
-        "hypot",
-        "exp",
-        "log",
-        "sin",
-        "cos",
-        "tan",
-        "asin",
-        "acos",
-        "atan",
-        "atan2",
-        "sinh",
-        "cosh",
-        "tanh",
-        "floor",
-        "wrap",
-        "where",
-    ]
-)
-"""The functions of the expression language."""
 
 RESERVED = FUNCTIONS | frozenset(keyword.kwlist) | {"pi", "inhibit", "t"}
 """Words that an expression, or every behavior, already uses."""
@@ -43,7 +17,7 @@ _NAME = re.compile(PATTERN)
 def why_no_name(text: str) -> str:
     """Why `text` can't name a variable; empty where it can."""
     if not _NAME.fullmatch(text):
-        return "a name has only the letters a-z and A-Z, digits and '_', starts with no digit, and is at most 64 long"
+        return "write at most 64 letters (a-z, A-Z), digits and '_', with no digit in front"
     return ""
 
 

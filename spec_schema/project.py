@@ -1,4 +1,4 @@
-"""The model of a project file, `specc.yaml`: which specs there are, and which trace is judged by which."""
+"""The model of a project file, `specc.yaml`: its specs, and which of them judges which trace."""
 
 from collections.abc import Mapping
 from typing import Annotated, Literal, final

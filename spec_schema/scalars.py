@@ -7,7 +7,7 @@ text. In a file of names and gains that is a trap.
 import re
 from typing import TypeAlias
 
-ScalarValue: TypeAlias = None | bool | int | float | str
+ScalarValue: TypeAlias = bool | int | float | str | None
 
 _CONSTANTS: dict[str, ScalarValue] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),

@@ -4,6 +4,7 @@ Pydantic stops at a mapping whose keys are wrong: its own rules are not looked a
 is taken for what it was probably meant to be, and the document checked again.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar, final
 
@@ -72,7 +73,7 @@ class _Repairs(Generic[Model]):
 
     def all_mistakes(self, errors: list[ErrorDetails]) -> tuple[Mistake, ...]:
         """The mistakes of all rounds; `errors` are those of the last."""
-        empty = _empty_values(self.data, ())
+        empty = set(_empty_values(self.data, ()))
         found = [m for error in errors for m in mistakes_of(self.model, error) if m.at not in empty]
         found.extend(empty_value(self.model, path) for path in empty)
         return (*self.mistakes, *map(self._as_written, found))
@@ -93,11 +94,13 @@ def _at(data: Plain, path: Path) -> Plain:
     return data
 
 
-def _empty_values(data: Plain, path: Path) -> list[Path]:
+def _empty_values(data: Plain, path: Path) -> Iterator[Path]:
     """The keys with nothing after them."""
     if isinstance(data, dict):
-        below = [_empty_values(value, (*path, key)) for key, value in data.items()]
-        return [(*path, key) for key, value in data.items() if value is None] + sum(below, [])
+        for key, value in data.items():
+            if value is None:
+                yield (*path, key)
+            yield from _empty_values(value, (*path, key))
     if isinstance(data, list):
-        return sum((_empty_values(value, (*path, index)) for index, value in enumerate(data)), [])
-    return []
+        for index, value in enumerate(data):
+            yield from _empty_values(value, (*path, index))

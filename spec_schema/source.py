@@ -1,7 +1,11 @@
 """A text, and places in it. Lines and columns count from 1; ends are exclusive."""
 
+import re
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import final
+
+_LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 @final
@@ -25,5 +29,11 @@ class Source:
 
     def line(self, number: int) -> str:
         """The line `number`, without its end; empty where there is none."""
-        lines = self.text.splitlines()
+        lines = _lines(self.text)
         return lines[number - 1] if 1 <= number <= len(lines) else ""
+
+
+@lru_cache(maxsize=8)
+def _lines(text: str) -> tuple[str, ...]:
+    """The lines as YAML 1.2 and editors count them: a form feed, say, ends none."""
+    return tuple(_LINE_END.split(text))

@@ -68,8 +68,8 @@ class TraceEntry(StrictModel):
     )
     values: RawValues | None = Field(
         default=None,
-        description="Of a discrete variable: which text in the log means which declared value. Of a "
-        "signal: the texts that it can have.",
+        description="Of a discrete variable: which text in the log means which declared value. Of "
+        "a signal: the texts that it can have.",
         examples=[{"Move-Forward": "forward"}],
     )
     constant: Quantity | None = Field(

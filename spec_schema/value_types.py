@@ -1,4 +1,4 @@
-"""The kinds of values that specs are made of: names, texts, units, numbers, quantities, expressions.
+"""The kinds of values that specs are made of: names, units, numbers, quantities, expressions.
 
 Units, quantities and expressions stay text here (or a plain number): what they mean is the
 compiler's first question, so that a mistake in one hides none in another.
@@ -229,6 +229,9 @@ def _schema(**keywords: Any) -> WithJsonSchema:
     return WithJsonSchema(keywords)
 
 
+Limits: TypeAlias = tuple[float | str, float | str]
+"""The two ends of a domain, as they are written."""
+
 Identifier: TypeAlias = Annotated[
     str, AfterValidator(_identifier), _schema(type="string", pattern=PATTERN)
 ]
@@ -257,7 +260,7 @@ UnitText: TypeAlias = Annotated[str, PlainValidator(_unit), _schema(type="string
 """A unit as text."""
 
 Domain: TypeAlias = Annotated[
-    tuple[float | str, float | str],
+    Limits,
     PlainValidator(_domain),
     _schema(type="array", items={"type": ["number", "string"]}, minItems=2, maxItems=2),
 ]

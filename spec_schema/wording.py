@@ -13,10 +13,10 @@ LONGEST = 60
 
 
 def quoted(text: str) -> str:
-    """The text in single quotes, short and harmless to a terminal.
+    r"""The text in single quotes, short and harmless to a terminal.
 
-    >>> quoted("gian"), quoted("a\\x1b[2J")
-    ("'gian'", "'a\\\\x1b[2J'")
+    >>> quoted("gian"), quoted(chr(7))
+    ("'gian'", "'\\x07'")
     """
     shown = text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
     harmless = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in shown)
@@ -27,18 +27,29 @@ def described(value: object) -> str:
     """What a value is, for "expected a mapping, got ..."."""
     match value:
         case None:
-            return "nothing"
+            words = "nothing"
         case bool():
-            return "true" if value else "false"
+            words = "true" if value else "false"
         case int() | float():
-            return f"the number {number(value)}"
+            words = f"the number {number(value)}"
         case str():
-            return f"the text {quoted(value)}"
+            words = f"the text {quoted(value)}"
         case list() | tuple():
-            return "a list"
-        case dict():
-            return "a mapping"
-    return "something else"
+            words = "a list"
+        case _:
+            words = "a mapping"
+    return words
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "axis"), counted(2, "axis"), counted(3, "number")
+    ('1 axis', '2 axes', '3 numbers')
+    """
+    if count == 1:
+        return f"1 {noun}"
+    return f"{count} axes" if noun == "axis" else f"{count} {noun}s"
 
 
 def number(value: float) -> str:

@@ -1,5 +1,6 @@
-"""A YAML parser's complaint, said again for people: what is missing, where it began, what to write."""
+"""A YAML parser's complaint, said for people: what is missing, where it began, what to write."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias, final
 
@@ -28,50 +29,61 @@ class Explanation:
     message: str
     span: Span
     help: str
-    label: str = ""
 
 
 def explain(complaint: Complaint, source: Source) -> Explanation:
     """The complaint of either of PyYAML's parsers (they word it differently) in our words."""
-    problem = complaint.problem
-    here = _character(source, complaint.noticed)
-    if "',' or" in problem:
-        return _unclosed_bracket(complaint, source)
-    if "end of stream" in problem or "document separator" in problem:
-        return Explanation(
-            "the quote that opens here is never closed",
-            _character(source, complaint.began),
-            "close the text with the same quote",
-        )
-    if "mapping values are not allowed" in problem:
-        return Explanation(
-            "a ':' where no key can end",
-            here,
-            "if it belongs to a text, put the text in quotes; "
-            "if it ends a key, indent the key like those beside it",
-        )
-    if "could not find expected ':'" in problem:
-        return Explanation(
-            "a line that is neither 'key: value' nor an item of a list",
-            _rest_of_line(source, complaint.began),
-            "write 'key: value', with a space after the ':'",
-        )
-    if "expected key" in problem or "block end" in problem or "'-' indicator" in problem:
-        return _misplaced(complaint, source)
-    if "cannot start any token" in problem:
-        character = source.line(here.line)[here.column - 1 :][:1]
-        return Explanation(
-            f"no value can start with {quoted(character)}", here, "put the text in quotes"
-        )
-    if "escape" in problem or "hexdecimal" in problem or "hexadecimal" in problem:
-        return Explanation(
-            "a backslash in double quotes starts an escape, and this is none",
-            here,
-            "write \\\\ for a backslash, or use single quotes",
-        )
-    if "node content" in problem:
-        return Explanation("a value is expected here", here, "write a value, or put text in quotes")
-    return Explanation(f"this can't be read as YAML: {problem}", here, "put text in quotes")
+    for words, explanation in _EXPLANATIONS:
+        if any(word in complaint.problem for word in words):
+            return explanation(complaint, source)
+    message = f"this can't be read as YAML: {complaint.problem}"
+    return Explanation(message, _character(source, complaint.noticed), "put text in quotes")
+
+
+def _unclosed_quote(complaint: Complaint, source: Source) -> Explanation:
+    return Explanation(
+        "the quote that opens here is never closed",
+        _character(source, complaint.began),
+        "close the text with the same quote",
+    )
+
+
+def _stray_colon(complaint: Complaint, source: Source) -> Explanation:
+    return Explanation(
+        "a ':' where no key can end",
+        _character(source, complaint.noticed),
+        "if it belongs to a text, put the text in quotes;\n"
+        "if it ends a key, indent the key like those beside it",
+    )
+
+
+def _no_colon(complaint: Complaint, source: Source) -> Explanation:
+    return Explanation(
+        "a line that is neither 'key: value' nor an item of a list",
+        _rest_of_line(source, complaint.began),
+        "write 'key: value', with a space after the ':'",
+    )
+
+
+def _strange_start(complaint: Complaint, source: Source) -> Explanation:
+    span = _character(source, complaint.noticed)
+    character = source.line(span.line)[span.column - 1 :][:1]
+    return Explanation(
+        f"no value can start with {quoted(character)}", span, "put the text in quotes"
+    )
+
+
+def _strange_escape(complaint: Complaint, source: Source) -> Explanation:
+    return Explanation(
+        "a backslash in double quotes starts an escape, and this is none",
+        _character(source, complaint.noticed),
+        "write \\\\ for a backslash, or use single quotes",
+    )
+
+
+def _no_value(complaint: Complaint, source: Source) -> Explanation:
+    span = _character(source, complaint.noticed)
+    return Explanation("a value is expected here", span, "write a value, or put text in quotes")
 
 
 def _unclosed_bracket(complaint: Complaint, source: Source) -> Explanation:
@@ -123,3 +135,16 @@ def _rest_of_line(source: Source, at: Position) -> Span:
     start = _character(source, at)
     text = source.line(start.line)[start.column - 1 :].split(" #")[0].rstrip()
     return Span(start.line, start.column, start.line, start.column + max(1, len(text)))
+
+
+_EXPLANATIONS: tuple[tuple[tuple[str, ...], Callable[[Complaint, Source], Explanation]], ...] = (
+    (("',' or",), _unclosed_bracket),
+    (("end of stream", "document separator"), _unclosed_quote),
+    (("mapping values are not allowed",), _stray_colon),
+    (("could not find expected ':'",), _no_colon),
+    (("expected key", "block end", "'-' indicator"), _misplaced),
+    (("cannot start any token",), _strange_start),
+    (("escape", "hexdecimal", "hexadecimal"), _strange_escape),
+    (("node content",), _no_value),
+)
+"""By what words of PyYAML's the first that fits is known; it does write "hexdecimal"."""
