@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from runtime import splines
 from runtime.arrays import Array, Booleans, Integers, frozen
-from runtime.kernels.interpolate import jacobian_points, lookup_points
+from runtime.kernels.interpolate import block_address, jacobian_points, lookup_points
 from runtime.program import Axis, Method, Table
 
 MAXIMUM_AXES = 5
@@ -62,7 +62,7 @@ def lookup(table: Table, points: npt.ArrayLike) -> Array:
     m = table.coefficients.shape[-1]
     out = np.empty((len(flat), m))
     lookup_points(
-        table.method is Method.CUBIC, *grid_of(table.axes, table.method), _column(table), flat, out
+        block_address(), table.method is Method.CUBIC, *grid_of(table.axes, table.method), _column(table), flat, out
     )
     return out.reshape(*leading, m)
 
@@ -77,7 +77,7 @@ def lookup_jacobian(table: Table, points: npt.ArrayLike) -> Array:
     m = table.coefficients.shape[-1]
     out = np.empty((len(flat), m, len(table.axes)))
     jacobian_points(
-        table.method is Method.CUBIC, *grid_of(table.axes, table.method), _column(table), flat, out
+        block_address(), table.method is Method.CUBIC, *grid_of(table.axes, table.method), _column(table), flat, out
     )
     return out.reshape(*leading, m, len(table.axes))
 

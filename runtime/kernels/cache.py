@@ -28,6 +28,8 @@ R = TypeVar("R")
 
 CONFIG: Any = numba.core.config  # its settings are made at run time, unknown to types
 SOURCES = Path(__file__).parent
+_KEPT: list[Any] = []
+"""Machine code that is called by address must outlive its callers."""
 UNUSED_AFTER = 30 * 24 * 3600.0
 """Seconds after which the cache of other sources is removed."""
 
@@ -47,6 +49,15 @@ def inlined(function: Callable[P, R]) -> Callable[P, R]:
         function
     )
     return compiled
+
+
+def compiled_for_c(function: Callable[..., None], signature: Any) -> int:
+    """Compile a function that kernels call by its address; its machine code is cached on disk."""
+    with _cache_in(cache_folder()) as possible:
+        compiled = numba.cfunc(signature, cache=possible, error_model="numpy")(function)
+    _KEPT.append(compiled)
+    address: int = compiled.address
+    return address
 
 
 @cache
