@@ -1,0 +1,1 @@
+"""Pictures: the one place that draws, from numbers made elsewhere."""

@@ -1,0 +1,100 @@
+"""The phase portrait of a behavior: topology first, as numbers; others draw it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from runtime.arrays import frozen
+from runtime.program import Program
+from verifier.topology.features import FixedPoint, Grid, Portrait, Trajectory
+from verifier.topology.fixed_points import find_fixed_points
+from verifier.topology.nullclines import find_nullclines
+from verifier.topology.orbits import find_orbits
+from verifier.topology.slices import Slice, cut, rates_at
+from verifier.topology.trajectories import find_trajectories
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Detail:
+    """How finely to look: points per axis in the plane and on a line, and how many trajectories."""
+
+    plane: int = 257
+    line: int = 2049
+    trajectories: int = 4
+
+
+EVERYTHING: Final = Detail()
+
+FIELD_STRIDE: Final = 4
+"""Every which node of the search grid is kept in the portrait."""
+
+
+def portrait(
+    program: Program,
+    axes: tuple[str, ...] | None = None,
+    held: Mapping[str, float] | None = None,
+    detail: Detail = EVERYTHING,
+) -> Portrait:
+    """The portrait over one or two states, everything else held at `held` (SI).
+
+    Without `axes` the first two variables that move by themselves are taken, or the only one.
+    What `held` does not name stays at a control's default, a state's `hold`.
+
+    Raises:
+        SliceError: an axis or a held value that the behavior does not have.
+    """
+    view = cut(program, axes, held or {})
+    grid = _sampled(view, detail)
+    points, remarks = find_fixed_points(view, grid)
+    planar = len(view.axes) == 2
+    return Portrait(
+        name=program.name,
+        about=program.about,
+        axes=view.axes,
+        held=view.held,
+        every=program.field.every,
+        field=_thinned(grid, FIELD_STRIDE if planar else 2 * FIELD_STRIDE),
+        nullclines=find_nullclines(view, grid) if planar else (),
+        fixed_points=points,
+        trajectories=_trajectories(view, grid, detail, points),
+        notes=(*remarks, *_notes(program, view, grid)),
+    )
+
+
+def _trajectories(
+    view: Slice, grid: Grid, detail: Detail, points: tuple[FixedPoint, ...]
+) -> tuple[Trajectory, ...]:
+    """Orbits of a map, trajectories in a plane; a line shows its own."""
+    if view.is_map:
+        return find_orbits(view, detail.trajectories)
+    if len(view.axes) == 1:
+        return ()
+    return find_trajectories(view, grid, points, detail.trajectories)
+
+
+def _sampled(view: Slice, detail: Detail) -> Grid:
+    """The field on the fine grid that zeros and nullclines are looked for on."""
+    count = detail.plane if len(view.axes) == 2 else detail.line
+    nodes = tuple(frozen(np.linspace(axis.low, axis.high, count)) for axis in view.axes)
+    points = np.stack(np.meshgrid(*nodes, indexing="ij"), axis=-1)
+    return Grid(nodes, frozen(rates_at(view, points)))
+
+
+def _thinned(grid: Grid, stride: int) -> Grid:
+    every: slice = slice(None, None, stride)
+    nodes = tuple(frozen(axis[every]) for axis in grid.nodes)
+    return Grid(nodes, frozen(grid.rates[(every,) * len(nodes)]))
+
+
+def _notes(program: Program, view: Slice, grid: Grid) -> tuple[str, ...]:
+    """What a reader of the portrait must know beside the numbers."""
+    names = [axis.name for axis in view.axes]
+    still = [name for j, name in enumerate(names) if not np.nanmax(np.abs(grid.rates[..., j]))]
+    notes = [f"{name} does not move by itself here, so no point is isolated" for name in still]
+    others = [state.name for state in program.states if state.is_driven and state.name not in names]
+    if others:
+        notes.append(f"held although the behavior drives it: {', '.join(others)}")
+    return tuple(notes)
