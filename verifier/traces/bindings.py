@@ -1,0 +1,150 @@
+"""Which topic or column each variable of a program is read from."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import final
+
+from runtime.program import Binding, Control, Program, State
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.source import Source
+from verifier.traces.faults import binding_diagnostic, nearest_help, origin_span
+from verifier.traces.log import LogFile, MessageLog, Sheet
+from verifier.traces.paths import MessagePath, PathError, parse_column, parse_path
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A binding and the place in the log that it names.
+
+    topic: of a message log, or the file's name of a sheet. column: the key of its values in
+    `Samples`. derived: whether the values are angles of a quaternion.
+    """
+
+    binding: Binding
+    topic: str
+    column: str
+    path: MessagePath | None
+
+    @property
+    def derived(self) -> bool:
+        """Whether the values are angles of a quaternion."""
+        return self.path is not None and self.path.derived != ""
+
+
+def wanted_topics(program: Program) -> frozenset[str]:
+    """The topics that the program's bindings name, its own recordings' included."""
+    paths = [binding.path for binding in (*program.bindings, *_own_bindings(program))]
+    return frozenset(topic for path in paths if (topic := _topic(path)))
+
+
+def resolve(program: Program, log: LogFile) -> tuple[Bound, ...]:
+    """Where each variable stands in this log; raises SpecError V303, V308 and V310.
+
+    A control that is neither bound nor recorded by specc itself is left out.
+    """
+    problems: list[Diagnostic] = []
+    found: list[Bound] = []
+    for binding in program.bindings:
+        if binding.constant is None:
+            bound = _bind(program, log, binding)
+            problems.append(bound) if isinstance(bound, Diagnostic) else found.append(bound)
+    for binding in _own_bindings(program):
+        if isinstance(log, MessageLog) and _topic(binding.path) in log.topics:
+            path = parse_path(binding.path)
+            found.append(Bound(binding, path.topic, path.text, path))
+    problems += _unbound(program, log, {bound.binding.name for bound in found})
+    if problems:
+        raise SpecError(problems)
+    return tuple(found)
+
+
+def _own_bindings(program: Program) -> tuple[Binding, ...]:
+    """Bindings to what specc records itself, for the variables that are not bound otherwise."""
+    bound = {binding.name for binding in program.bindings}
+    states = [_own_binding(program, "state", state, state.values) for state in program.states]
+    controls = [_own_binding(program, "control", control, ()) for control in program.controls]
+    return tuple(binding for binding in (*states, *controls) if binding.name not in bound)
+
+
+def _own_binding(
+    program: Program, group: str, variable: State | Control, values: tuple[str, ...]
+) -> Binding:
+    return Binding(
+        name=variable.name,
+        path=f"/{program.name}/{group}.{variable.name}",
+        unit=variable.unit,
+        delay=0.0,
+        scale=1.0,
+        offset=0.0,
+        constant=None,
+        values=values,
+        origin=variable.origin,
+    )
+
+
+def _topic(path: str) -> str:
+    try:
+        return parse_path(path).topic
+    except PathError:
+        return ""
+
+
+def _bind(program: Program, log: LogFile, binding: Binding) -> Bound | Diagnostic:
+    if isinstance(log, Sheet):
+        return _bind_column(program, log, binding)
+    try:
+        path = parse_path(binding.path)
+    except PathError as error:
+        part = (error.start, error.end)
+        return binding_diagnostic(
+            program, binding, "V308", error.message, help=error.help, part=part
+        )
+    if path.topic not in log.topics:
+        message = f"the log has no topic '{path.topic}'"
+        return binding_diagnostic(
+            program,
+            binding,
+            "V303",
+            message,
+            help=nearest_help(path.topic, log.topics, "topics"),
+            part=(0, len(path.topic)),
+        )
+    return Bound(binding, path.topic, path.text, path)
+
+
+def _bind_column(program: Program, sheet: Sheet, binding: Binding) -> Bound | Diagnostic:
+    name = parse_column(binding.path)
+    if name in sheet.columns:
+        return Bound(binding, sheet.source, name, None)
+    message = f"the file has no column '{name}'"
+    help_text = nearest_help(name, tuple(sheet.columns), "columns")
+    return binding_diagnostic(program, binding, "V303", message, help=help_text)
+
+
+def _unbound(program: Program, log: LogFile, found: set[str]) -> list[Diagnostic]:
+    named = found | {binding.name for binding in program.bindings}
+    source = Source(program.source.file, program.source.text)
+    return [
+        Diagnostic(
+            "V310",
+            Severity.ERROR,
+            f"nothing in the log is bound to the driven state '{state.name}'",
+            source,
+            origin_span(source, state.origin),
+            path=f"$.state.{state.name}",
+            help=_binding_help(state.name, log),
+        )
+        for state in program.states
+        if state.is_driven and state.name not in named
+    ]
+
+
+def _binding_help(name: str, log: LogFile) -> str:
+    if isinstance(log, Sheet):
+        return f"write trace: {{{name}: COLUMN}}\n{_listed('columns', tuple(log.columns))}"
+    return f"write trace: {{{name}: /TOPIC.FIELD}}\n{_listed('topics', log.topics)}"
+
+
+def _listed(noun: str, names: Sequence[str]) -> str:
+    return nearest_help("", names, noun)

@@ -1,0 +1,52 @@
+"""A column: one value of every message, as a number or as text."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias, final
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans, Integers
+
+Cell: TypeAlias = float | str | None
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Column:
+    """numbers: (T,), NaN where there is none. texts: (T,) for a column of text, else None."""
+
+    numbers: Array
+    texts: tuple[str | None, ...] | None
+
+    def rows(self, rows: Integers) -> "Column":
+        """These rows, in this order."""
+        texts = self.texts
+        if texts is not None:
+            texts = tuple([texts[row] for row in rows])
+        return Column(self.numbers[rows], texts)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Decoded:
+    """What a decoder read of T messages.
+
+    columns: one for each leaf asked for. readable: (T,) whether the message could be decoded at
+    all; `reason` says what was wrong with the first that could not.
+    """
+
+    columns: tuple[Column, ...]
+    readable: Booleans
+    reason: str
+
+
+def column(cells: Sequence[Cell]) -> Column:
+    """A column of text where any cell is text, else of numbers."""
+    if any(isinstance(cell, str) for cell in cells):
+        texts = tuple(
+            cell if cell is None or isinstance(cell, str) else f"{cell:g}" for cell in cells
+        )
+        return Column(np.full(len(cells), np.nan), texts)
+    numbers = [np.nan if cell is None else float(cell) for cell in cells]
+    return Column(np.array(numbers, dtype=np.float64), None)

@@ -1,0 +1,88 @@
+"""A log of any kind, told by its first bytes and not by its name."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from verifier.traces.bag1_file import is_bag1, read_bag1
+from verifier.traces.bag2_file import is_sqlite, read_bag2
+from verifier.traces.csv_file import is_csv, read_csv
+from verifier.traces.faults import file_fault
+from verifier.traces.log import LogFile, MessageLog, Wanted
+from verifier.traces.mcap_file import find_attachment, is_mcap, read_mcap
+from verifier.traces.trace import Loss
+
+HEAD_BYTES = 1 << 16
+
+_KINDS = "MCAP, ROS 1 bag, ROS 2 bag (folder or .db3), CSV with a header line"
+
+
+def open_log(path: Path, wanted: Wanted) -> LogFile:
+    """The log's messages or columns; raises SpecError V301, V302 or V309."""
+    try:
+        return _read_folder(path, wanted) if path.is_dir() else _read_file(path, wanted)
+    except OSError as error:
+        raise file_fault(
+            path, "V301", f"the log can't be read: {error.strerror or error}"
+        ) from error
+
+
+def attached_program(path: Path) -> tuple[str, bytes] | None:
+    """Name and bytes of the compiled spec that an MCAP file carries, if it carries one.
+
+    Reads no message. Raises SpecError V301.
+    """
+    try:
+        if path.is_dir() or not is_mcap(_head(path)):
+            return None
+        return find_attachment(path, ".specc")
+    except OSError as error:
+        raise file_fault(
+            path, "V301", f"the log can't be read: {error.strerror or error}"
+        ) from error
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(HEAD_BYTES)
+
+
+def _read_file(path: Path, wanted: Wanted) -> LogFile:
+    head = _head(path)
+    if not head:
+        raise file_fault(path, "V302", "the file is empty")
+    if is_mcap(head):
+        return read_mcap(path, wanted)
+    if is_bag1(head):
+        return read_bag1(path, wanted)
+    if is_sqlite(head):
+        return read_bag2(path, wanted)
+    if is_csv(head):
+        return read_csv(path)
+    raise file_fault(path, "V302", "this is no log that specc knows", f"known: {_KINDS}")
+
+
+def _read_folder(path: Path, wanted: Wanted) -> LogFile:
+    """A folder of MCAP files that belong together, or a ROS 2 bag."""
+    parts = sorted(path.glob("*.mcap"))
+    if parts:
+        return _joined(path, [read_mcap(part, wanted) for part in parts])
+    if (path / "metadata.yaml").is_file():
+        return read_bag2(path, wanted)
+    databases = sorted(path.glob("*.db3"))
+    if databases:
+        return _joined(path, [read_bag2(part, wanted) for part in databases])
+    raise file_fault(path, "V302", "the folder holds no log that specc knows", f"known: {_KINDS}")
+
+
+def _joined(path: Path, logs: Sequence[MessageLog]) -> MessageLog:
+    return MessageLog(
+        source=str(path),
+        kind=f"folder of {logs[0].kind}",
+        streams=tuple(stream for log in logs for stream in log.streams),
+        losses=tuple(
+            Loss(loss.cause, loss.count, f"{Path(log.source).name}: {loss.detail}")
+            for log in logs
+            for loss in log.losses
+        ),
+        notes=tuple(dict.fromkeys(note for log in logs for note in log.notes)),
+    )

@@ -1,0 +1,216 @@
+"""A log, read for one program: the pipeline from a file to a `Trace`."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeAlias, final
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans, Integers, frozen
+from runtime.program import Binding, Kind, Program, State
+from spec_schema.diagnostics import Diagnostic, SpecError
+from verifier.traces.bindings import Bound, resolve, wanted_topics
+from verifier.traces.cleaning import Ordering, order
+from verifier.traces.clock import Clock, choose_clocks, stamp_fault
+from verifier.traces.faults import binding_diagnostic, file_diagnostic
+from verifier.traces.fields import FieldError
+from verifier.traces.log import LogFile, Sheet, Wanted
+from verifier.traces.open_log import open_log
+from verifier.traces.samples import Samples, check_topic, sample_sheet, sample_topic
+from verifier.traces.trace import Loss, Series, Trace
+from verifier.traces.values import Measured, NotNumbersError, measured
+
+ClockWish: TypeAlias = Literal["auto", "sensor", "log"]
+
+
+def read_trace(path: Path, program: Program, clock: ClockWish = "auto") -> Trace:
+    """What the log says about the program's variables, in SI, with every loss counted.
+
+    clock: which stamps are the times; `auto` takes the sensors' where that can be done for all
+    topics on one clock. Raises SpecError V301 to V312, all at once, where nothing can be judged.
+    """
+    log = open_log(path, Wanted(wanted_topics(program)))
+    bound = resolve(program, log)
+    topics = _sample(program, log, bound)
+    if clock == "sensor":
+        _require_stamps(path, topics)
+    # The time column of a sheet is all there is, and already noted.
+    clocks = choose_clocks(tuple(topics.values()), "log" if isinstance(log, Sheet) else clock)
+    runs = {name: _run(samples, clocks.of[name]) for name, samples in topics.items()}
+    readings = _readings(program, bound, topics, runs)
+    start = min((int(reading.times[0]) for reading in readings), default=0)
+    return Trace(
+        source=str(path),
+        series={reading.bound.binding.name: _series(reading, start) for reading in readings},
+        constants={b.name: b.constant for b in program.bindings if b.constant is not None},
+        start=start * 1e-9,
+        losses=_losses(log, topics, runs, readings),
+        notes=_notes(log, topics, runs, clocks.notes),
+    )
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Run:
+    """The usable samples of a topic in order: rows (k,) of it, times (k,) in nanoseconds."""
+
+    clock: Clock
+    times: Integers
+    ordering: Ordering
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Reading:
+    """A variable's samples: times (k,) in nanoseconds, the binding's delay taken off."""
+
+    bound: Bound
+    clock: Clock
+    times: Integers
+    values: Array
+    losses: tuple[Loss, ...]
+
+
+def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str, Samples]:
+    """The samples of each bound topic; raises SpecError with the faults of all of them."""
+    if isinstance(log, Sheet):
+        return {log.source: sample_sheet(log, sorted({b.column for b in bound}))} if bound else {}
+    problems: list[Diagnostic] = []
+    topics: dict[str, Samples] = {}
+    for topic in dict.fromkeys(one.topic for one in bound):
+        streams = tuple(s for s in log.streams if s.channel.topic == topic and s.payloads)
+        here = [one for one in bound if one.topic == topic and one.path]
+        faults = [
+            _field_diagnostic(program, one.binding, error)
+            for one in here
+            if one.path and (error := check_topic(streams, one.path))
+        ]
+        problems += faults
+        if not faults and streams:
+            topics[topic] = sample_topic(streams, [one.path for one in here if one.path])
+    if problems:
+        raise SpecError(problems)
+    return topics
+
+
+def _field_diagnostic(program: Program, binding: Binding, error: FieldError) -> Diagnostic:
+    return binding_diagnostic(program, binding, error.code, error.message, help=error.help)
+
+
+def _require_stamps(path: Path, topics: Mapping[str, Samples]) -> None:
+    faults = {topic: stamp_fault(samples) for topic, samples in topics.items()}
+    problems = [
+        file_diagnostic(path, "V312", f"{topic}: {fault}", "use log times: --clock log")
+        for topic, fault in faults.items()
+        if fault
+    ]
+    if problems:
+        raise SpecError(problems)
+
+
+def _run(samples: Samples, clock: Clock) -> _Run:
+    times = samples.log_times
+    usable = np.ones(times.size, dtype=np.bool_)
+    if clock is Clock.SENSOR and samples.stamps is not None:
+        times = samples.stamps
+        usable = times > 0
+    ordering = order(samples.topic, times, usable)
+    return _Run(clock, times[ordering.rows], ordering)
+
+
+def _readings(
+    program: Program,
+    bound: Sequence[Bound],
+    topics: Mapping[str, Samples],
+    runs: Mapping[str, _Run],
+) -> list[_Reading]:
+    readings: list[_Reading] = []
+    problems: list[Diagnostic] = []
+    for one in bound:
+        try:
+            reading = _reading(program, one, topics, runs)
+        except NotNumbersError as error:
+            problems.append(
+                binding_diagnostic(program, one.binding, "V305", error.message, help=error.help)
+            )
+            continue
+        if reading is None:
+            message = f"no usable sample stands at {one.binding.path}"
+            problems.append(binding_diagnostic(program, one.binding, "V306", message))
+        else:
+            readings.append(reading)
+    if problems:
+        raise SpecError(problems)
+    return readings
+
+
+def _reading(
+    program: Program, bound: Bound, topics: Mapping[str, Samples], runs: Mapping[str, _Run]
+) -> _Reading | None:
+    """The variable's samples; None where there are none."""
+    if bound.topic not in topics:
+        return None
+    run = runs[bound.topic]
+    state = next((s for s in program.states if s.name == bound.binding.name), None)
+    found = _measured(bound, state, topics[bound.topic], run)
+    finite: Booleans = np.isfinite(found.values)
+    if not finite.any():
+        return None
+    values = found.values[finite]
+    if state is not None and state.kind is Kind.PERIODIC:
+        values = np.unwrap(values, period=state.high - state.low)
+    delay = round(bound.binding.delay * 1e9)
+    return _Reading(bound, run.clock, run.times[finite] - delay, values, found.losses)
+
+
+def _measured(bound: Bound, state: State | None, samples: Samples, run: _Run) -> Measured:
+    values = bound.binding.values or (state.values if state else ())
+    column = samples.columns[bound.column].rows(run.ordering.rows)
+    return measured(bound.binding, values, column, derived=bound.derived)
+
+
+def _series(reading: _Reading, start: int) -> Series:
+    binding = reading.bound.binding
+    times = (reading.times - start).astype(np.float64) * 1e-9
+    clock = str(reading.clock)
+    return Series(binding.name, frozen(times), frozen(reading.values), binding.path, clock)
+
+
+def _losses(
+    log: LogFile,
+    topics: Mapping[str, Samples],
+    runs: Mapping[str, _Run],
+    readings: Sequence[_Reading],
+) -> tuple[Loss, ...]:
+    found = [*log.losses]
+    for topic, samples in topics.items():
+        found += [*samples.losses, *runs[topic].ordering.losses]
+    for reading in readings:
+        found += reading.losses
+    return tuple(found)
+
+
+def _notes(
+    log: LogFile,
+    topics: Mapping[str, Samples],
+    runs: Mapping[str, _Run],
+    clock_notes: Sequence[str],
+) -> tuple[str, ...]:
+    notes = [*log.notes, *clock_notes]
+    for topic, samples in topics.items():
+        notes += runs[topic].ordering.notes
+        notes += _zero_note(samples)
+    return tuple(notes)
+
+
+def _zero_note(samples: Samples) -> list[str]:
+    """Messages in which all the numbers that are read are zero: often no measurement at all."""
+    columns = [one.numbers for one in samples.columns.values() if one.texts is None]
+    if len(columns) < 2:
+        return []
+    zero = int(np.all(np.stack(columns) == 0.0, axis=0).sum())
+    whole = columns[0].size
+    if not zero:
+        return []
+    return [f"{samples.topic}: in {zero} of {whole} messages everything that is read is zero"]
