@@ -54,6 +54,7 @@ class TableSpec(StrictModel):
         default=64 * 2**20,
         description="The memory that all tables of the behavior may take.",
         examples=["64 MiB"],
+        json_schema_extra={"default": "64 MiB"},
     )
     keep: Literal["tables", "code"] = Field(
         default="tables",
@@ -164,7 +165,7 @@ class BehaviorSpec(StrictModel):
         examples=[{"formula": {"x": "-k*x"}}],
     )
     table: TableSpec = Field(
-        default=TableSpec(),
+        default_factory=TableSpec,
         description="How the field is tabulated.",
         examples=[{"tolerance": {"x": "1e-6 m/s"}}],
     )

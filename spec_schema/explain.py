@@ -1,19 +1,17 @@
 """Pydantic's findings in our words: a code, a sentence, what to write, and where to point."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
+from spec_schema.kinds import MODELS
 from spec_schema.mistake import TYPE, Mistake, carried
 from spec_schema.model_walk import choices_at, example_at, keys_at
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, nearest
 from spec_schema.wording import as_yaml, described, number, quoted
-
-KINDS = ("behavior", "project")
-"""What a spec file can describe."""
 
 _WANTED = {
     "string_type": "text",
@@ -47,6 +45,8 @@ def mistakes_of(model: type[BaseModel], error: ErrorDetails) -> Iterator[Mistake
             where = (*path, *found.at)
             yield Mistake(found.code, found.message, found.help, where, found.on_key or at_key)
         return
+    if error["type"] == "too_short" and error["input"]:
+        return  # pydantic does not count the items that are wrong themselves
     yield _mistake(model, error["type"], path, error["input"], context) or Mistake(
         "S103", f"{error['msg'][:1].lower()}{error['msg'][1:]}", "", path
     )
@@ -60,7 +60,7 @@ def _mistake(
     if kind == "missing":
         found = _missing(model, path)
     elif kind == "extra_forbidden":
-        found = unknown_key(model, path)
+        found = unknown_key(model, path, ())
     elif kind == "literal_error":
         found = _unknown_word(model, path, got)
     elif kind in _WANTED:
@@ -72,17 +72,19 @@ def _mistake(
     return found
 
 
-def unknown_key(model: type[BaseModel], path: Path) -> Mistake:
-    """The key at `path` is not one of the language."""
+def unknown_key(model: type[BaseModel], path: Path, beside: Collection[str]) -> Mistake:
+    """The key at `path` is not one of the language; `beside` it stand other keys."""
     word = str(path[-1])
     known = keys_at(model, path[:-1])
-    remedy = did_you_mean(word, known) or f"the keys here are: {', '.join(known)}"
+    meant = meant_key(model, path, beside)
+    remedy = f"did you mean '{meant}'?" if meant else f"the keys here are: {', '.join(known)}"
     return Mistake("S102", f"unknown key {quoted(word)}", remedy, path, on_key=True)
 
 
-def meant_key(model: type[BaseModel], path: Path) -> str | None:
-    """The key that the unknown one at `path` was probably meant to be."""
-    return nearest(str(path[-1]), keys_at(model, path[:-1]))
+def meant_key(model: type[BaseModel], path: Path, beside: Collection[str]) -> str | None:
+    """The key that the unknown one at `path` was probably meant to be: one that is not there."""
+    absent = [key for key in keys_at(model, path[:-1]) if key not in beside]
+    return nearest(str(path[-1]), absent)
 
 
 def empty_value(model: type[BaseModel], path: Path) -> Mistake:
@@ -96,7 +98,7 @@ def _missing(model: type[BaseModel], path: Path) -> Mistake:
 
 
 def _unknown_word(model: type[BaseModel], path: Path, got: Any) -> Mistake:
-    known = KINDS if path == ("kind",) else choices_at(model, path)
+    known = tuple(MODELS) if path == ("kind",) else choices_at(model, path)
     what = str(path[-1])
     if not isinstance(got, str):
         return Mistake(
@@ -117,20 +119,15 @@ def _wrong_type(model: type[BaseModel], kind: str, path: Path, got: Any) -> Mist
 
 def _wrong_length(model: type[BaseModel], path: Path, got: Any) -> Mistake:
     what = "mapping" if isinstance(got, dict) else "list"
-    return Mistake("S110", f"{_last_name(path)} is an empty {what}", _write(model, path), path)
+    return Mistake("S110", f"{quoted(str(path[-1]))} is an empty {what}", _write(model, path), path)
 
 
 def _out_of_bounds(
     model: type[BaseModel], kind: str, path: Path, got: float, context: dict[str, Any]
 ) -> Mistake:
     key, words = _BOUNDS[kind]
-    message = f"{_last_name(path)} must be {words} {number(context[key])}, not {number(got)}"
+    message = f"expected {words} {number(context[key])}, got {number(got)}"
     return Mistake("S106", message, _write(model, path), path)
-
-
-def _last_name(path: Path) -> str:
-    names = [step for step in path if isinstance(step, str)]
-    return quoted(names[-1]) if names else "the document"
 
 
 def _write(model: type[BaseModel], path: Path, verb: str = "write") -> str:

@@ -247,6 +247,8 @@ FORMS = ("formula", "arrows", "grid", "module", "step")
 class FieldSpec(StrictModel):
     """The vector field, in exactly one of five forms."""
 
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+
     formula: Formula | None = Field(
         default=None,
         description="The rate of each driven state as an expression, in its unit per second.",

@@ -47,11 +47,10 @@ def _mistakes(value: object, shape: tuple[int, ...], at: tuple[int, ...]) -> Ite
         for index, item in enumerate(value):
             yield from _mistakes(item, shape[1:], (*at, index))
     elif shape or not at or isinstance(value, bool) or not isinstance(value, int | float):
-        wanted = (
-            "a list, as beside it" if shape else "a number" if at else "nested lists of numbers"
-        )
+        wanted = "a list" if shape else "a number" if at else "nested lists of numbers"
         got = "an empty list" if value == [] else described(value)
-        yield Mistake("S103", f"expected {wanted}, got {got}", "a grid is rectangular", at)
+        remedy = "a grid is rectangular" if shape else ""
+        yield Mistake("S103", f"expected {wanted}, got {got}", remedy, at)
     elif not math.isfinite(value):
         yield Mistake("S107", f"{number(value)} is no rate", "write a finite number", at)
 

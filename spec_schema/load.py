@@ -2,22 +2,19 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
-from typing import TypeAlias, final
+from typing import final
 
-from spec_schema.behavior import BehaviorSpec
 from spec_schema.characters import LARGEST, decode, too_large
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError, in_file_order
-from spec_schema.explain import KINDS
+from spec_schema.kinds import MODELS, AnySpec
 from spec_schema.mistake import Mistake
 from spec_schema.node import Plain, plain
 from spec_schema.places import Path, Places, dotted
-from spec_schema.project import ProjectSpec
 from spec_schema.shape import check_shape
 from spec_schema.source import Source, Span
 from spec_schema.suggest import did_you_mean, nearest
 from spec_schema.yaml_reader import read
 
-AnySpec: TypeAlias = BehaviorSpec | ProjectSpec
 MOST = 100
 """How many mistakes of one file are listed."""
 
@@ -100,9 +97,9 @@ def load_source(source: Source) -> Loaded:
 def _model_of(data: dict[str, Plain]) -> type[AnySpec]:
     """The model that the document is meant for, even where it does not say so."""
     kind = data.get("kind")
-    meant = nearest(kind, KINDS) if isinstance(kind, str) else None
-    is_project = meant == "project" or (meant is None and {"specs", "traces"} & data.keys())
-    return ProjectSpec if is_project else BehaviorSpec
+    meant = nearest(kind, MODELS) if isinstance(kind, str) else None
+    looks_like = "project" if {"specs", "traces"} & data.keys() else "behavior"
+    return MODELS[meant or looks_like]
 
 
 def _diagnostic(places: Places, mistake: Mistake) -> Diagnostic:

@@ -62,12 +62,12 @@ class _Repairs(Generic[Model]):
 
     def repair(self, path: Path) -> None:
         """Rename the unknown key at `path` to the one that was meant, or take it out."""
-        self.mistakes.append(self._as_written(unknown_key(self.model, path)))
         mapping = _at(self.data, path[:-1])
         assert isinstance(mapping, dict), "pydantic finds unknown keys in mappings alone"
         value = mapping.pop(str(path[-1]))
-        meant = meant_key(self.model, path)
-        if meant is not None and meant not in mapping:
+        self.mistakes.append(self._as_written(unknown_key(self.model, path, mapping)))
+        meant = meant_key(self.model, path, mapping)
+        if meant is not None:
             mapping[meant] = value
             self.written[(*path[:-1], meant)] = str(path[-1])
 

@@ -1,7 +1,7 @@
 """Where the variables of a behavior stand in a log: the spec's `trace:` block."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Self, TypeAlias, final
+from typing import Annotated, Self, TypeAlias, final
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
@@ -108,9 +108,7 @@ class TraceEntry(StrictModel):
             )
 
 
-_TEXT_OR_MAPPING: dict[str, Any] = {
-    "anyOf": [{"type": "string", "minLength": 1}, {"$ref": "#/$defs/TraceEntry"}]
-}
-
-TraceSpec: TypeAlias = Annotated[TraceEntry, BeforeValidator(_spelled_out)]
+TraceSpec: TypeAlias = Annotated[
+    TraceEntry, BeforeValidator(_spelled_out, json_schema_input_type=Text | TraceEntry)
+]
 """An entry of `trace:`: a bare path, or a mapping."""

@@ -69,11 +69,10 @@ def _filled(text: str) -> str:
     return text
 
 
-def _finite(value: float, text: str = "a number") -> float:
+def _finite(value: float) -> float:
     if not math.isfinite(value):
-        raise refused(
-            "S107", f"{number(value)} is not {text} a spec can use", "write a finite number"
-        )
+        message = f"expected a finite number, got {number(value)}"
+        raise refused("S107", message, "write a number")
     return value
 
 

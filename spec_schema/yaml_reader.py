@@ -58,6 +58,7 @@ class _Reader:
         self.source = source
         self.problems: list[Diagnostic] = []
         self._events: Iterator[Event] = yaml.parse(source.text, Loader=_LOADER)
+        self._quoted = Span(0, 0, 0, 0)
 
     def document(self) -> Node | None:
         """The one document of the text, or None where there is none to read."""
@@ -65,7 +66,7 @@ class _Reader:
             return self._document()
         except _Stop:
             return None
-        except yaml.MarkedYAMLError as error:
+        except yaml.YAMLError as error:
             self._syntax(error)
             return None
 
@@ -91,6 +92,8 @@ class _Reader:
             return Scalar(None, "", span)
         self._properties(event, path)
         if isinstance(event, yaml.ScalarEvent):
+            if event.style in {"'", '"'}:
+                self._quoted = _span(event)
             value = event.value if event.style else resolve(event.value)
             return Scalar(value, event.value, _span(event))
         if len(path) >= DEEPEST:
@@ -164,9 +167,8 @@ class _Reader:
             span = self._property(event, "&")
             message = f"the anchor {quoted(event.anchor)}: anchors are not part of the language"
             self._refuse("S003", message, span, path, _FIX_ALIAS)
-        tag = getattr(event, "tag", None)
-        if tag is not None:
-            message = f"the tag {quoted(tag)}: tags are not part of the language"
+        if getattr(event, "tag", None) is not None:
+            message = "a tag: tags are not part of the language"
             self._refuse("S004", message, self._property(event, "!"), path, "remove it")
 
     def _property(self, event: Event, sign: str) -> Span:
@@ -199,10 +201,16 @@ class _Reader:
         message = f"a spec is a mapping of keys to values, not {got}"
         self._refuse("S008", message, root.span, help_=_FIRST_LINES)
 
-    def _syntax(self, error: yaml.MarkedYAMLError) -> None:
-        noticed = _position(error.problem_mark)
-        began = _position(error.context_mark) if error.context_mark else noticed
-        found = explain(Complaint(error.problem or "", noticed, began), self.source)
+    def _syntax(self, error: yaml.YAMLError) -> None:
+        mark = getattr(error, "problem_mark", None)
+        context = getattr(error, "context_mark", None) or mark
+        complaint = Complaint(
+            getattr(error, "problem", None) or "",
+            _position(mark) if mark else (1, 1),
+            _position(context) if context else (1, 1),
+            self._quoted,
+        )
+        found = explain(complaint, self.source)
         self._refuse("S001", found.message, found.span, help_=found.help)
 
     def _refuse(

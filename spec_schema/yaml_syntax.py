@@ -14,11 +14,15 @@ Position: TypeAlias = tuple[int, int]
 @final
 @dataclass(frozen=True, slots=True)
 class Complaint:
-    """What the parser says: the problem, where it noticed, and where the thing at fault began."""
+    """What the parser says: the problem, where it noticed, and where the thing at fault began.
+
+    last_quoted: the last text in quotes that it read.
+    """
 
     problem: str
     noticed: Position
     began: Position
+    last_quoted: Span
 
 
 @final
@@ -33,11 +37,22 @@ class Explanation:
 
 def explain(complaint: Complaint, source: Source) -> Explanation:
     """The complaint of either of PyYAML's parsers (they word it differently) in our words."""
+    late = complaint.last_quoted
+    if late.line < late.end_line == complaint.noticed[0]:
+        return _late_quote(late)
     for words, explanation in _EXPLANATIONS:
         if any(word in complaint.problem for word in words):
             return explanation(complaint, source)
     message = f"this can't be read as YAML: {complaint.problem}"
     return Explanation(message, _character(source, complaint.noticed), "put text in quotes")
+
+
+def _late_quote(text: Span) -> Explanation:
+    return Explanation(
+        f"the text in quotes that begins here ends only in line {text.end_line}",
+        Span(text.line, text.column, text.line, text.column + 1),
+        "close the quote in the line in which it opens",
+    )
 
 
 def _unclosed_quote(complaint: Complaint, source: Source) -> Explanation:
