@@ -23,8 +23,8 @@ from verifier.traces.paths import DERIVED, MessagePath, Steps, steps_text
 
 EXAMPLES = 20
 _STAMPS: tuple[Steps, ...] = (("header", "stamp"), ("stamp",), ("timestamp",))
-_SECONDS = ("sec", "secs")
-_NANOSECONDS = ("nanosec", "nsec", "nsecs")
+_SECONDS = frozenset({"sec", "secs"})
+_NANOSECONDS = frozenset({"nanosec", "nsec", "nsecs"})
 _QUATERNION = frozenset("xyzw")
 
 
@@ -82,17 +82,23 @@ def is_quaternion(node: Node) -> bool:
     return all(isinstance(child, Number) for _, child in node.fields)
 
 
+def is_stamp(node: Node) -> bool:
+    """Whether the node is a time of seconds and nanoseconds."""
+    names = set(node.names) if isinstance(node, Struct) else set()
+    return len(names) == 2 and bool(names & _SECONDS) and bool(names & _NANOSECONDS)
+
+
 def stamp_leaves(root: Struct) -> StampLeaves | None:
     """The stamp in a header or at the top of the message, if it has one."""
     for steps in _STAMPS:
         node: Node | None = root
         for step in steps:
             node = node.field(str(step)) if isinstance(node, Struct) else None
-        if isinstance(node, Struct):
-            seconds = next((name for name in _SECONDS if name in node.names), None)
-            rest = next((name for name in _NANOSECONDS if name in node.names), None)
-            if seconds and rest:
-                return StampLeaves((*steps, seconds), (*steps, rest))
+        if node is not None and is_stamp(node):
+            assert isinstance(node, Struct), "a stamp is a struct"
+            seconds = next(name for name in node.names if name in _SECONDS)
+            rest = next(name for name in node.names if name in _NANOSECONDS)
+            return StampLeaves((*steps, seconds), (*steps, rest))
     return None
 
 

@@ -88,6 +88,11 @@ def parse_column(text: str) -> str:
     return text
 
 
+def column_text(name: str) -> str:
+    """The column's name as a path, quoted where it begins with a quote itself."""
+    return name if parse_column(name) == name else f'"{name}"'
+
+
 def steps_text(steps: Steps) -> str:
     """`pose.position[0].x`, as it stands after the topic and its dot."""
     parts = [f"[{step}]" if isinstance(step, int) else f".{_quoted(step)}" for step in steps]

@@ -1,0 +1,47 @@
+"""The fields of a message that a user may want to bind, listed."""
+
+from collections.abc import Iterator
+from itertools import islice
+
+from verifier.traces.definitions import Many, Node, Struct
+from verifier.traces.fields import is_quaternion, is_stamp
+from verifier.traces.paths import Steps
+
+MOST_FIELDS = 400
+MOST_ITEMS = 8
+DEEPEST = 16
+
+
+def list_fields(root: Struct) -> tuple[Steps, ...]:
+    """The leaves of a message: all items of short lists, the first of long ones; no stamps."""
+    found = (steps for steps, node in _walk(root, (), DEEPEST) if not isinstance(node, Struct))
+    return tuple(islice(found, MOST_FIELDS))
+
+
+def list_quaternions(root: Struct) -> tuple[Steps, ...]:
+    """Where quaternions stand among the first fields of a message."""
+    nodes = islice(_walk(root, (), DEEPEST), MOST_FIELDS)
+    return tuple(steps for steps, node in nodes if is_quaternion(node))
+
+
+def _walk(node: Node, above: Steps, depth: int) -> Iterator[tuple[Steps, Node]]:
+    """The structs and leaves at and below a node."""
+    if isinstance(node, Many):
+        for index in range(_items(node) if depth else 0):
+            yield from _walk(node.item, (*above, index), depth - 1)
+        return
+    if isinstance(node, Struct):
+        if is_stamp(node) or not depth:
+            return
+        yield above, node
+        for name, child in node.fields:
+            yield from _walk(child, (*above, name), depth - 1)
+    else:
+        yield above, node
+
+
+def _items(node: Many) -> int:
+    """How many items of a list are shown: a covariance has 36, a joint state perhaps six."""
+    if isinstance(node.item, Struct) or (node.count or 0) > MOST_ITEMS:
+        return 1
+    return MOST_ITEMS if node.count is None else node.count
