@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from spec_schema.expressions.tree import Apply, Expr, Name, Number, Text, fold, walk
+from spec_schema.expressions.algebra import build
+from spec_schema.expressions.tree import Apply, Expr, Name, Number, Text, fold, same, walk
 from spec_schema.faults import Fault
 from spec_schema.suggest import did_you_mean
 
@@ -81,3 +82,20 @@ def _index(
         message, advice = f"{name} is a number and has no values by name", ""
     faults.append(Fault(text.start, text.end, "S138", message, advice))
     return Number(0.0, text.start, text.end)
+
+
+def simplify(expr: Expr) -> Expr:
+    """The same values with fewer operations, by the laws of `algebra`; idempotent.
+
+    Values agree to rounding wherever the expression is finite, and so are its parts. A part that
+    changed has no place in the text any more.
+    """
+
+    def simplified(node: Expr, operands: tuple[Expr, ...]) -> Expr:
+        if not isinstance(node, Apply):
+            return node
+        result = build(node.op, *operands)
+        unchanged = isinstance(result, Apply) and result.op == node.op
+        return node if unchanged and same(result, node) else result
+
+    return fold(expr, simplified)
