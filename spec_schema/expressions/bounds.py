@@ -46,7 +46,7 @@ def bounds(expr: Expr, box: Mapping[str, tuple[float, float]]) -> tuple[float, f
             case Apply(op=op) if op in TRUTH:
                 return TRUTH[op](*operands)
             case Apply(op=op):
-                empty = any(part.is_empty for part in operands) and op != "pow"
+                empty = any(part.is_empty for part in operands) and op not in {"pow", "hypot"}
                 return nothing() if empty else OPERATIONS[op](*operands)
         raise AssertionError("texts are resolved before an expression is bounded")
 
@@ -172,6 +172,11 @@ def _angle(y: Interval, x: Interval) -> Interval:
 
 
 def _hypot(a: Interval, b: Interval) -> Interval:
+    if a.is_empty or b.is_empty:
+        # hypot(nan, inf) is inf, with any other number nan.
+        other = b if a.is_empty else a
+        infinite = other.is_unbounded and not other.is_empty
+        return Interval(math.inf, math.inf, nan=True) if infinite else nothing()
     a, b = interval.absolute(a), interval.absolute(b)
     ends = (math.hypot(a.low, b.low), math.hypot(a.high, b.high))
     return clamped(outward(*ends, ulps=4, nan=a.nan or b.nan), 0.0, math.inf)
@@ -244,4 +249,4 @@ OPERATIONS: dict[str, Callable[..., Interval]] = {
     "cosh": _cosh,
     "tanh": rising(math.tanh),
 }
-"""What has a value only where every operand has one (but for nan**0, which is 1)."""
+"""What has a value only where every operand has one (`pow` and `hypot` know their exceptions)."""

@@ -98,8 +98,11 @@ def _within(function: Callable[[float], float]) -> Callable[[float], float]:
     return value
 
 
-WITH_NAN = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not", "where"})
-"""What does not hand on a nan. (`pow` does but for x**0 and 1**x.)"""
+WITH_NAN = frozenset({"lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not", "where"}) | {
+    "pow",
+    "hypot",
+}
+"""What decides itself what a nan becomes: nan**0 = 1**nan = 1, hypot(inf, nan) = inf."""
 
 OPERATIONS: dict[str, Callable[..., float]] = {
     "add": lambda a, b: a + b,

@@ -9,7 +9,7 @@ know; so they are moved outward by that and one more.
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 EPSILON = math.ulp(1.0)
@@ -32,7 +32,7 @@ class Interval:
     @property
     def is_unbounded(self) -> bool:
         """Whether an infinity is in it."""
-        return math.isinf(self.low) or math.isinf(self.high)
+        return not self.is_empty and (math.isinf(self.low) or math.isinf(self.high))
 
     def __contains__(self, value: float) -> bool:
         return self.low <= value <= self.high
@@ -142,7 +142,7 @@ def absolute(a: Interval) -> Interval:
 def modulo(a: Interval, b: Interval) -> Interval:
     """Python's a % b, which is in [0, b] or [b, 0] (rounding may reach b)."""
     nan = a.nan or b.nan or a.is_unbounded or 0.0 in b
-    if 0.0 <= a.low and a.high < b.low:
+    if a.low >= 0.0 and a.high < b.low:
         return Interval(a.low, a.high, nan)
     low, high = min(b.low, 0.0), max(b.high, 0.0)
     if low == 0.0 and a.low >= 0.0:
@@ -166,22 +166,28 @@ def power(a: Interval, b: Interval) -> Interval:
         return _whole_power(a, b.low)
     nan = a.nan or b.nan
     parts = []
-    if a.high >= 0:
+    if a.high >= 0 and not b.is_empty:
         base = Interval(max(a.low, 0.0), a.high)
-        parts.append(_positive_power(base, b, nan=nan))
-    if a.low < 0:
+        parts.append(_positive_power(base, b))
+    if a.low < 0 and _holds_whole(b):
         base = Interval(max(-a.high, 0.0), -a.low)
-        size = _positive_power(base, b, nan=True)
+        size = _positive_power(base, b)
         parts.extend((size, negate(size)))
-    if a.nan and 0.0 in b:
-        parts.append(Interval(1.0, 1.0, nan=True))  # nan**0 = 1
-    return hull(parts)
+    if (a.nan and 0.0 in b) or (b.nan and 1.0 in a):
+        parts.append(Interval(1.0, 1.0))  # nan**0 = 1**nan = 1
+    if not parts:
+        return nothing()
+    return replace(hull(parts), nan=nan or a.low < 0)
 
 
-def _positive_power(a: Interval, b: Interval, *, nan: bool) -> Interval:
+def _holds_whole(a: Interval) -> bool:
+    return a.is_unbounded or (not a.is_empty and math.ceil(a.low) <= math.floor(a.high))
+
+
+def _positive_power(a: Interval, b: Interval) -> Interval:
     """Monotone in each operand, so the corners hold the extremes."""
     corners = [_pow(x, y) for x in (a.low, a.high) for y in (b.low, b.high)]
-    return clamped(around(corners, ulps=4, nan=nan), 0.0, math.inf)
+    return clamped(around(corners, ulps=4, nan=False), 0.0, math.inf)
 
 
 def _whole_power(a: Interval, n: float) -> Interval:

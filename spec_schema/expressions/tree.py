@@ -6,8 +6,9 @@ that no text holds (derivatives). All walks use an explicit stack, so depth cost
 
 What the operations mean, once for the whole house (IEEE 754 doubles, no exceptions):
 
-* `add sub mul div neg pow sqrt exp log` and the trigonometric ones as in C99's math.h:
-  1/0 = inf, 0/0 = nan, sqrt(-1) = nan, log(0) = -inf, (-8)**(1/3) = nan, x**0 = 1.
+* `add sub mul div neg pow sqrt exp log hypot` and the trigonometric ones as in C99's math.h:
+  1/0 = inf, 0/0 = nan, sqrt(-1) = nan, log(0) = -inf, (-8)**(1/3) = nan; x**0 = 1 and 1**x = 1
+  for every x.
 * `mod` is Python's: the remainder has the sign of the divisor; x % 0 = nan.
 * `lt le gt ge eq ne` give 1 or 0; with nan all give 0 but `ne`, which gives 1.
 * `and or not where` take every number but 0 for true, nan included; the first three give 1 or 0.
