@@ -17,6 +17,7 @@ from runtime.arrays import Array, Booleans, Integers, frozen
 from runtime.code import ARITY, Code
 from runtime.kernels import tape as numbers
 from runtime.kernels.interpolate import block_address
+from runtime.kernels.machine import machine_address
 from runtime.kernels.tape import MOST_AXES, TABLE, Tape
 from runtime.program import Method, Table
 
@@ -30,7 +31,10 @@ Value: TypeAlias = tuple[int, ...]
 @final
 @dataclass(frozen=True, slots=True)
 class Sum:
-    """The sum of `code * tables[table][column]` over the parts; 0 where there are none."""
+    """The sum of `code * tables[table][column]` over the parts; 0 where there are none.
+
+    A table of -1 stands for the constant 1.
+    """
 
     parts: tuple[tuple[Code, int, int], ...]
 
@@ -53,6 +57,7 @@ def pack(results: Sequence[Code | Sum], names: tuple[str, ...], tables: Sequence
         frozen(graph.literals),
         read_only_integers([layout.place[root] for root in roots]),
         *_packed_tables(tables, names),
+        machine_address(),
         block_address() if tables else 0,
     )
 
@@ -141,10 +146,11 @@ class _Graph:
     def sum(self, result: Sum) -> int:
         total: int | None = None
         for code, table, column in result.parts:
-            factor = self.code(code)
-            part = self.number((self.COLUMN, table, column))
-            if self.literal_at(factor) != 1.0:
-                part = self.number((OPERATIONS["mul"], factor, part))
+            part = factor = self.code(code)
+            if table >= 0:
+                part = self.number((self.COLUMN, table, column))
+                if self.literal_at(factor) != 1.0:
+                    part = self.number((OPERATIONS["mul"], factor, part))
             total = part if total is None else self.number((OPERATIONS["add"], total, part))
         return self.literal(0.0) if total is None else total
 

@@ -33,7 +33,7 @@ from runtime.kernels.blocks import (
     side_of,
     take_rates,
 )
-from runtime.kernels.cache import kernel
+from runtime.kernels.cache import kernel, part
 from runtime.kernels.machine import run
 from runtime.kernels.tape import LANES, Tape
 
@@ -128,7 +128,7 @@ def adapt(tape: Tape, domain: Domain, start: Array, task: Task, results: Results
                 _judge(block, pace, domain, task, i, results)
 
 
-@kernel
+@part
 def _take_up(
     block: Block,
     pace: Pace,
@@ -160,7 +160,7 @@ def _take_up(
         _stop(block, pace, lane, COMPLETED, -1, 0, results)
 
 
-@kernel
+@part
 def _stop(
     block: Block, pace: Pace, lane: int, code: int, variable: int, side: int, results: Results
 ) -> None:
@@ -172,12 +172,15 @@ def _stop(
     block.alive[lane] = False
 
 
-@kernel
+@part
 def _move(block: Block, pace: Pace, source: int, lane: int) -> None:
     """Put what lane `source` does into `lane`."""
-    block.rows[:, lane] = block.rows[:, source]
-    block.x[:, lane] = block.x[:, source]
-    block.k[:, :, lane] = block.k[:, :, source]
+    for i in range(block.rows.shape[0]):
+        block.rows[i, lane] = block.rows[i, source]
+    for i in range(block.x.shape[0]):
+        block.x[i, lane] = block.x[i, source]
+        # Of the rates only the first are kept from step to step.
+        block.k[0, i, lane] = block.k[0, i, source]
     block.t[lane] = block.t[source]
     block.h[lane] = block.h[source]
     block.alive[lane] = block.alive[source]
@@ -189,7 +192,7 @@ def _move(block: Block, pace: Pace, source: int, lane: int) -> None:
     pace.rejected[lane] = pace.rejected[source]
 
 
-@kernel
+@part
 def _attempt(
     tape: Tape,
     block: Block,
@@ -200,22 +203,27 @@ def _attempt(
     results: Results,
 ) -> None:
     """One step of every lane, from x to new with k[0] .. k[6]; k[0] is the last one's k[6]."""
-    fresh = np.any(pace.fresh[:lanes])
-    for stage in range(0 if fresh else 1, STAGES):
+    first = 1
+    for lane in range(lanes):
+        if pace.fresh[lane]:
+            first = 0
+    for stage in range(first, STAGES):
         if stage == 1:
             _choose_steps(block, pace, domain, task, lanes, results)
         _set_stage(block, domain.moving, stage, lanes)
         run(tape, block.rows, block.points, lanes)
         take_rates(tape, block, stage, lanes)
     for i in range(block.x.shape[0]):
-        block.new[i, :lanes] = block.rows[i, :lanes]
+        for lane in range(lanes):
+            block.new[i, lane] = block.rows[i, lane]
 
 
-@kernel
+@part
 def _set_stage(block: Block, moving: Integers, stage: int, lanes: int) -> None:
     for j in range(moving.shape[0]):
         i = moving[j]
-        block.rows[i, :lanes] = 0.0
+        for lane in range(lanes):
+            block.rows[i, lane] = 0.0
         for before in range(stage):
             weight = TABLEAU[stage, before]
             for lane in range(lanes):
@@ -224,7 +232,7 @@ def _set_stage(block: Block, moving: Integers, stage: int, lanes: int) -> None:
             block.rows[i, lane] = block.x[i, lane] + block.h[lane] * block.rows[i, lane]
 
 
-@kernel
+@part
 def _choose_steps(
     block: Block,
     pace: Pace,
@@ -246,7 +254,7 @@ def _choose_steps(
             block.h[lane] = left
 
 
-@kernel
+@part
 def _first_step(block: Block, domain: Domain, task: Task, lane: int) -> float:
     """A hundredth of the time in which the state would double (Hairer, Norsett, Wanner II.4)."""
     size = 0.0
@@ -259,7 +267,7 @@ def _first_step(block: Block, domain: Domain, task: Task, lane: int) -> float:
     return 0.01 * size / speed if size > 1e-5 and speed > 1e-5 else 1e-6
 
 
-@kernel
+@part
 def _judge(
     block: Block, pace: Pace, domain: Domain, task: Task, lane: int, results: Results
 ) -> None:
@@ -287,7 +295,7 @@ def _judge(
         _stop(block, pace, lane, TOO_MANY_STEPS, -1, 0, results)
 
 
-@kernel
+@part
 def _error(block: Block, domain: Domain, task: Task, lane: int) -> float:
     """The largest error of a state in units of its tolerance; NaN where it is not finite."""
     largest = 0.0
@@ -303,7 +311,7 @@ def _error(block: Block, domain: Domain, task: Task, lane: int) -> float:
     return largest if is_finite(block.new, lane) else np.nan
 
 
-@kernel
+@part
 def _accept(
     block: Block, pace: Pace, domain: Domain, task: Task, lane: int, results: Results
 ) -> None:
@@ -334,14 +342,14 @@ def _accept(
         _stop(block, pace, lane, COMPLETED, -1, 0, results)
 
 
-@kernel
+@part
 def _set_dense(block: Block, domain: Domain, lane: int) -> None:
     """The polynomial of order 4 through the step."""
     dense = block.dense
     h = block.h[lane]
-    dense[:] = 0.0
     for i in range(block.x.shape[0]):
         dense[0, i] = block.x[i, lane]
+        dense[1, i] = dense[2, i] = dense[3, i] = dense[4, i] = 0.0
     for j in range(domain.moving.shape[0]):
         i = domain.moving[j]
         dense[1, i] = block.new[i, lane] - block.x[i, lane]
@@ -351,7 +359,7 @@ def _set_dense(block: Block, domain: Domain, lane: int) -> None:
             dense[4, i] += h * DENSE[stage] * block.k[stage, i, lane]
 
 
-@kernel
+@part
 def _may_leave(block: Block, domain: Domain, lane: int) -> bool:
     """Whether a step with both ends inside is so near an edge that it could bulge out of it."""
     for j in range(domain.moving.shape[0]):
@@ -365,7 +373,7 @@ def _may_leave(block: Block, domain: Domain, lane: int) -> bool:
     return False
 
 
-@kernel
+@part
 def _give_samples(
     block: Block,
     pace: Pace,

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
-from runtime.kernels.cache import kernel
+from runtime.kernels.cache import part
 from runtime.kernels.machine import fill_literals
 from runtime.kernels.tape import LANES, MOST_AXES, Tape
 
@@ -63,7 +63,7 @@ class Results(NamedTuple):
     ended: Array
 
 
-@kernel
+@part
 def new_block(tape: Tape) -> Block:
     """An empty block with the tape's literals in place."""
     n = tape.results.shape[0]
@@ -82,7 +82,7 @@ def new_block(tape: Tape) -> Block:
     )
 
 
-@kernel
+@part
 def load(block: Block, lane: int, register: Array) -> None:
     """Put a trajectory's register (r,) into a lane."""
     for i in range(register.shape[0]):
@@ -92,7 +92,15 @@ def load(block: Block, lane: int, register: Array) -> None:
     block.alive[lane] = True
 
 
-@kernel
+@part
+def copy_lanes(source: Array, target: Array, lanes: int) -> None:
+    """Copy the states of all lanes, (n, LANES) to the first n rows of the target."""
+    for i in range(source.shape[0]):
+        for lane in range(lanes):
+            target[i, lane] = source[i, lane]
+
+
+@part
 def take_rates(tape: Tape, block: Block, stage: int, lanes: int) -> None:
     """Copy the results of a run to `k[stage]`."""
     for i in range(tape.results.shape[0]):
@@ -101,7 +109,7 @@ def take_rates(tape: Tape, block: Block, stage: int, lanes: int) -> None:
             block.k[stage, i, lane] = block.rows[row, lane]
 
 
-@kernel
+@part
 def outside(values: Array, lane: int, first: int, last: int, domain: Domain) -> int:
     """The first row in first .. last - 1 whose value is outside its domain or NaN; else -1."""
     for i in range(first, last):
@@ -111,7 +119,7 @@ def outside(values: Array, lane: int, first: int, last: int, domain: Domain) -> 
     return -1
 
 
-@kernel
+@part
 def is_finite(values: Array, lane: int) -> bool:
     """Whether all of a lane's values are finite."""
     total = 0.0
@@ -120,7 +128,7 @@ def is_finite(values: Array, lane: int) -> bool:
     return total == 0.0
 
 
-@kernel
+@part
 def point(dense: Array, i: int, theta: float) -> float:
     """State i at theta of the step."""
     rest = 1.0 - theta
@@ -129,7 +137,7 @@ def point(dense: Array, i: int, theta: float) -> float:
     return value
 
 
-@kernel
+@part
 def outside_at(dense: Array, theta: float, domain: Domain) -> int:
     """The first state that is outside its domain at theta; else -1."""
     for i in range(dense.shape[1]):
@@ -139,7 +147,7 @@ def outside_at(dense: Array, theta: float, domain: Domain) -> int:
     return -1
 
 
-@kernel
+@part
 def first_exit(dense: Array, domain: Domain) -> tuple[float, int]:
     """Where in the step the domain is left first, by bisection, and by which state.
 
@@ -163,7 +171,7 @@ def first_exit(dense: Array, domain: Domain) -> tuple[float, int]:
     return 1.0, -1
 
 
-@kernel
+@part
 def end(results: Results, b: int, code: int, variable: int, side: int, time: float) -> None:
     """Note how and when trajectory b ended."""
     results.endings[b, 0] = code
@@ -172,14 +180,14 @@ def end(results: Results, b: int, code: int, variable: int, side: int, time: flo
     results.ended[b, 0] = time
 
 
-@kernel
+@part
 def end_at(results: Results, b: int, values: Array, lane: int) -> None:
     """Note the state in which trajectory b ended."""
     for i in range(results.states.shape[2]):
         results.ended[b, 1 + i] = values[i, lane]
 
 
-@kernel
+@part
 def side_of(value: float, high: float) -> int:
     """1 above the domain, -1 below, 0 for NaN."""
     if value > high:
@@ -187,13 +195,13 @@ def side_of(value: float, high: float) -> int:
     return -1 if value == value else 0  # noqa: PLR0124  # NaN is what differs from itself
 
 
-@kernel
+@part
 def nearer_side(value: float, variable: int, domain: Domain) -> int:
     """1 where a value at an edge of its domain is at the high one, else -1."""
     return 1 if 2.0 * value > domain.lows[variable] + domain.highs[variable] else -1
 
 
-@kernel
+@part
 def blank(results: Results, b: int, first: int) -> None:
     """No states from sample `first` on."""
     for s in range(first, results.states.shape[1]):

@@ -45,9 +45,15 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function into each kernel that calls it; it has no cache of its own."""
-    compiled: Callable[P, R] = numba.njit(forceinline=True, nogil=True, error_model="numpy")(
-        function
-    )
+    compiled: Callable[P, R] = numba.njit(inline="always", error_model="numpy")(function)
+    return compiled
+
+
+def part(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a function that only kernels call: it lacks what a call from Python would need."""
+    compiled: Callable[P, R] = numba.njit(
+        nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )(function)
     return compiled
 
 

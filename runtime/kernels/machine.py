@@ -8,12 +8,14 @@ nothing raises, 1/0 is inf, sqrt(-1) is NaN.
 # ruff: noqa: C901, PLR0912, PLR0917 - one branch per operation; kernels take arguments by place
 
 import math
-from typing import Final
+from functools import cache
+from typing import Any, Final
 
 import numpy as np
+from numba import carray, types
 
 from runtime.arrays import Array
-from runtime.kernels.cache import kernel
+from runtime.kernels.cache import compiled_for_c, kernel, part
 from runtime.kernels.interpolate import lookup_lanes
 from runtime.kernels.tape import (
     ABS,
@@ -59,22 +61,61 @@ from runtime.kernels.tape import (
     WRAP,
     Tape,
 )
+from runtime.kernels.vectors import call
 
 PI: Final = math.pi
 TURN: Final = 2.0 * math.pi
 
 
-@kernel
+@part
 def run(tape: Tape, rows: Array, points: Array, lanes: int) -> None:
     """Run every instruction; `points` (MOST_AXES, LANES) is scratch for the tables' arguments."""
-    for k in range(tape.instructions.shape[0]):
-        op = tape.instructions[k, 0]
-        target = tape.instructions[k, 1]
-        a = tape.instructions[k, 2]
-        b = tape.instructions[k, 3]
-        c = tape.instructions[k, 4]
+    code = tape.instructions, tape.instructions.shape[0]
+    tables = tape.shapes, tape.axes, tape.counts, tape.periodic, tape.lows, tape.inverse_steps
+    call(
+        tape.machine,
+        (*code, rows, tape.rows, points, lanes, *tables, tape.coefficients, tape.lookup),
+    )
+
+
+@cache
+def machine_address() -> int:
+    """Where the machine's own machine code is; compiled on the first call."""
+    numbers, integers = types.CPointer(types.float64), types.CPointer(types.int64)
+    flags, i = types.CPointer(types.uint8), types.int64
+    code, work = (integers, i), (numbers, i, numbers, i)
+    tables = (integers, integers, integers, flags, numbers, numbers)
+    return compiled_for_c(_machine, types.void(*code, *work, *tables, numbers, i))
+
+
+def _machine(
+    instructions_: Any,
+    count: int,
+    rows_: Any,
+    size: int,
+    points_: Any,
+    lanes: int,
+    shapes: Any,
+    axes: Any,
+    counts: Any,
+    periodic: Any,
+    lows: Any,
+    inverse_steps: Any,
+    coefficients: Any,
+    lookup: int,
+) -> None:
+    rows = carray(rows_, (size, LANES))
+    points = carray(points_, (MOST_AXES, LANES))
+    instructions = carray(instructions_, (count, 5))
+    for k in range(count):
+        op = instructions[k, 0]
+        target = instructions[k, 1]
+        a = instructions[k, 2]
+        b = instructions[k, 3]
+        c = instructions[k, 4]
         if op == TABLE:
-            _look_up(tape, a, rows, target, points, lanes)
+            tables = shapes, axes, counts, periodic, lows, inverse_steps, coefficients
+            _look_up(lookup, tables, a, rows, target, points, lanes)
         elif op <= NEG:
             _arithmetic(op, rows, target, a, b, lanes)
         elif op <= WHERE:
@@ -85,31 +126,35 @@ def run(tape: Tape, rows: Array, points: Array, lanes: int) -> None:
             _analysis(op, rows, target, a, b, lanes)
 
 
-@kernel
-def _look_up(tape: Tape, t: int, rows: Array, target: int, points: Array, lanes: int) -> None:
-    d = tape.shapes[t, 1]
-    m = tape.shapes[t, 2]
+@part
+def _look_up(
+    lookup: int, tables: Any, t: int, rows: Array, target: int, points: Array, lanes: int
+) -> None:
+    shapes, axes, counts, periodic, lows, inverse_steps, coefficients = tables
+    shape = carray(shapes, (t + 1, 4))[t]
+    d, m = shape[1], shape[2]
+    entries = carray(axes, (t + 1, MOST_AXES))[t]
     for i in range(d):
         for lane in range(lanes):
-            points[i, lane] = rows[tape.axes[t, i], lane]
+            points[i, lane] = rows[entries[i], lane]
     lookup_lanes(
-        tape.lookup,
-        tape.shapes[t, 0] != 0,
+        lookup,
+        shape[0] != 0,
         d,
         m,
-        tape.counts[t],
-        tape.lows[t],
-        tape.inverse_steps[t],
-        tape.periodic[t],
-        tape.coefficients,
-        tape.shapes[t, 3],
+        carray(counts, (t + 1, MOST_AXES))[t],
+        carray(lows, (t + 1, MOST_AXES))[t],
+        carray(inverse_steps, (t + 1, MOST_AXES))[t],
+        carray(periodic, (t + 1, MOST_AXES))[t],
+        carray(coefficients, 1),
+        shape[3],
         points,
         lanes,
         rows[target : target + m],
     )
 
 
-@kernel
+@part
 def _arithmetic(op: int, rows: Array, target: int, a: int, b: int, lanes: int) -> None:
     if op == ADD:
         for i in range(lanes):
@@ -134,7 +179,7 @@ def _arithmetic(op: int, rows: Array, target: int, a: int, b: int, lanes: int) -
             rows[target, i] = -rows[a, i]
 
 
-@kernel
+@part
 def _logic(op: int, rows: Array, target: int, a: int, b: int, c: int, lanes: int) -> None:
     if op == LT:
         for i in range(lanes):
@@ -168,7 +213,7 @@ def _logic(op: int, rows: Array, target: int, a: int, b: int, c: int, lanes: int
             rows[target, i] = rows[b, i] if rows[a, i] != 0.0 else rows[c, i]
 
 
-@kernel
+@part
 def _shape(op: int, rows: Array, target: int, a: int, b: int, c: int, lanes: int) -> None:
     if op == ABS:
         for i in range(lanes):
@@ -190,7 +235,7 @@ def _shape(op: int, rows: Array, target: int, a: int, b: int, c: int, lanes: int
             rows[target, i] = math.sqrt(rows[a, i])
 
 
-@kernel
+@part
 def _analysis(op: int, rows: Array, target: int, a: int, b: int, lanes: int) -> None:
     for i in range(lanes):
         x = rows[a, i]
@@ -229,7 +274,7 @@ def _analysis(op: int, rows: Array, target: int, a: int, b: int, lanes: int) -> 
         rows[target, i] = y
 
 
-@kernel
+@part
 def _modulo(x: float, y: float) -> float:
     """Python's `x % y`, which has the sign of y; NaN where y is 0."""
     rest: float = np.fmod(x, y)
@@ -238,25 +283,25 @@ def _modulo(x: float, y: float) -> float:
     return math.copysign(0.0, y) if rest == 0.0 else rest
 
 
-@kernel
+@part
 def _sign(x: float) -> float:
     if x > 0.0:
         return 1.0
     return -1.0 if x < 0.0 else x * 0.0
 
 
-@kernel
+@part
 def _smaller(x: float, y: float) -> float:
     """The smaller one; NaN where either is (C's fmin would hide it)."""
     return x if x < y or x != x else y  # noqa: PLR0124  # NaN is what differs from itself
 
 
-@kernel
+@part
 def _larger(x: float, y: float) -> float:
     return x if x > y or x != x else y  # noqa: PLR0124  # NaN is what differs from itself
 
 
-@kernel
+@part
 def _wrapped(x: float) -> float:
     """`x` in (-pi, pi]; exact for the double nearest to 2 pi: fmod and the shift do not round."""
     rest: float = np.fmod(x, TURN)
@@ -265,11 +310,12 @@ def _wrapped(x: float) -> float:
     return rest + TURN if rest <= -PI else rest
 
 
-@kernel
+@part
 def fill_literals(tape: Tape, rows: Array) -> None:
     """Put the literals into their rows, for all lanes: no instruction writes there."""
     for j in range(tape.literals.shape[0]):
-        rows[tape.entries + j, :] = tape.literals[j]
+        for lane in range(LANES):
+            rows[tape.entries + j, lane] = tape.literals[j]
 
 
 @kernel

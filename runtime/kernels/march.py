@@ -15,6 +15,7 @@ from runtime.kernels.blocks import (
     Domain,
     Results,
     blank,
+    copy_lanes,
     end,
     end_at,
     first_exit,
@@ -27,7 +28,7 @@ from runtime.kernels.blocks import (
     side_of,
     take_rates,
 )
-from runtime.kernels.cache import kernel
+from runtime.kernels.cache import kernel, part
 from runtime.kernels.machine import run
 from runtime.kernels.tape import LANES, Tape
 
@@ -61,7 +62,7 @@ def march(
         _complete(block, course, first, lanes, results)
 
 
-@kernel
+@part
 def _begin(
     block: Block,
     domain: Domain,
@@ -97,7 +98,7 @@ def _begin(
     return going
 
 
-@kernel
+@part
 def _take_inputs(block: Block, course: Course, b: int, s: int, lane: int) -> None:
     inputs = course.inputs[b if course.inputs.shape[0] > 1 else 0]
     values = inputs[s if course.inputs.shape[1] > 1 else 0]
@@ -108,19 +109,22 @@ def _take_inputs(block: Block, course: Course, b: int, s: int, lane: int) -> Non
             block.x[entry, lane] = values[j]
 
 
-@kernel
+@part
 def _map_step(tape: Tape, block: Block, moving: Integers, lanes: int) -> None:
     run(tape, block.rows, block.points, lanes)
     take_rates(tape, block, 0, lanes)
-    block.new[:] = block.x
+    copy_lanes(block.x, block.new, lanes)
     for j in range(moving.shape[0]):
-        block.new[moving[j]] = block.k[0, moving[j]]
+        for lane in range(lanes):
+            block.new[moving[j], lane] = block.k[0, moving[j], lane]
 
 
-@kernel
+@part
 def _runge_kutta_step(tape: Tape, block: Block, moving: Integers, lanes: int) -> None:
     """From x to new; the register's states are left at the last stage."""
-    block.new[:] = 0.0
+    for i in range(block.x.shape[0]):
+        for lane in range(lanes):
+            block.new[i, lane] = 0.0
     for stage in range(4):
         run(tape, block.rows, block.points, lanes)
         take_rates(tape, block, 0 if stage == 0 else 1, lanes)
@@ -137,7 +141,7 @@ def _runge_kutta_step(tape: Tape, block: Block, moving: Integers, lanes: int) ->
             block.new[i, lane] = block.x[i, lane] + block.h[lane] * block.new[i, lane]
 
 
-@kernel
+@part
 def _finish(
     tape: Tape,
     block: Block,
@@ -157,19 +161,17 @@ def _finish(
                 block.new[i, lane] = block.x[i, lane]
         elif is_finite(block.new, lane) and outside(block.new, lane, 0, n, domain) >= 0:
             leaving += 1
-    for i in range(n):
-        block.rows[i, :lanes] = block.new[i, :lanes]
+    copy_lanes(block.new, block.rows, lanes)
     if leaving > 0 and not is_map:
         run(tape, block.rows, block.points, lanes)
         take_rates(tape, block, 1, lanes)
     for lane in range(lanes):
         if block.h[lane] != 0.0:
             _settle(block, domain, lane, is_map, results, first + lane, s + 1)
-    for i in range(n):
-        block.x[i, :lanes] = block.new[i, :lanes]
+    copy_lanes(block.new, block.x, lanes)
 
 
-@kernel
+@part
 def _settle(
     block: Block,
     domain: Domain,
@@ -196,14 +198,14 @@ def _settle(
     blank(results, b, sample)
 
 
-@kernel
+@part
 def _leave(block: Block, domain: Domain, lane: int, left: int, results: Results, b: int) -> None:
     """End a lane where the cubic through both ends of the step leaves the domain."""
     h = block.h[lane]
     dense = block.dense
-    dense[:] = 0.0
     for i in range(block.x.shape[0]):
         dense[0, i] = block.x[i, lane]
+        dense[1, i] = dense[2, i] = dense[3, i] = dense[4, i] = 0.0
     for j in range(domain.moving.shape[0]):
         i = domain.moving[j]
         dense[1, i] = block.new[i, lane] - block.x[i, lane]
@@ -217,7 +219,7 @@ def _leave(block: Block, domain: Domain, lane: int, left: int, results: Results,
         results.ended[b, 1 + i] = point(dense, i, theta)
 
 
-@kernel
+@part
 def _complete(block: Block, course: Course, first: int, lanes: int, results: Results) -> None:
     last = course.times.shape[1] - 1
     for lane in range(lanes):

@@ -32,7 +32,7 @@ class Tape(NamedTuple):
     shapes: (t, 4) per table: cubic (0 or 1), axes d, columns m, offset into `coefficients`.
     axes: (t, 5) the register entry of each axis. counts: (t, 5) coefficients along each axis.
     periodic, lows, inverse_steps: (t, 5). coefficients: those of all tables, flat.
-    lookup: the address of the compiled lookup (`block_address`); 0 without tables.
+    machine, lookup: where the machine code of both is in this process; lookup is 0 without tables.
     """
 
     entries: int
@@ -47,4 +47,5 @@ class Tape(NamedTuple):
     lows: Array
     inverse_steps: Array
     coefficients: Array
+    machine: int
     lookup: int
