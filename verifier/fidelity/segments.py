@@ -1,0 +1,140 @@
+"""Which stretches of a trace are judged, and why the others are not.
+
+A stretch is cut where a needed series has a gap (longer than five of its median periods and than
+half a second), where `judge_when` is false, where a variable is outside its domain, and where
+what is left is shorter than the horizon.
+"""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from runtime.arrays import Array
+from runtime.machine import evaluate
+from runtime.program import Control, Kind, Program, State
+from verifier.fidelity.needs import Needs, held, parts_of, period_of
+from verifier.fidelity.spans import contains, intersect, length, spans_of, without
+from verifier.report.report import Exclusion
+from verifier.traces.trace import Series
+
+GAP_PERIODS = 5.0
+GAP_SECONDS = 0.5
+EDGE = 1e-9
+"""How far beyond its domain, as a share of it, a value may be by rounding."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Segments:
+    """The judged stretches (k, 2), what was taken out, and the whole stretch (start, end)."""
+
+    spans: Array
+    exclusions: tuple[Exclusion, ...]
+    whole: tuple[float, float]
+
+
+def segments_of(program: Program, needs: Needs, horizon: float) -> Segments:
+    """The judged stretches of the trace: every cause takes from what the ones before it left."""
+    base = needs.series[needs.base].times
+    left = spans_of([(float(base[0]), float(base[-1]))])
+    exclusions = []
+    for cause, allowed in _causes(program, needs, left):
+        kept = intersect(left, allowed)
+        exclusions += _exclusion(cause, left, kept, base)
+        left = kept
+    long_enough = left[left[:, 1] - left[:, 0] >= horizon * (1.0 - EDGE)]
+    cause = f"shorter than the horizon of {horizon:g} s"
+    exclusions += _exclusion(cause, left, long_enough, base)
+    return Segments(long_enough, tuple(exclusions), (float(base[0]), float(base[-1])))
+
+
+def _causes(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
+    """Each cause of exclusion with the spans (k, 2) that it leaves."""
+    states = [(f"a gap in {s.name}", _covered(s, 0.0)) for s in needs.series]
+    told = [s for s in (each.series for each in (*needs.inputs, *needs.signals)) if s is not None]
+    held_on = [(f"a gap in {s.name}", _covered(s, period_of(s.times))) for s in told]
+    judged = [("judge_when is false", _judged(program, needs, whole))]
+    return [*states, *held_on, *judged, *_domains(program, needs, whole)]
+
+
+def _exclusion(cause: str, before: Array, after: Array, base: Array) -> list[Exclusion]:
+    seconds = length(before) - length(after)
+    samples = int(np.sum(contains(before, base))) - int(np.sum(contains(after, base)))
+    return [Exclusion(cause, seconds, samples)] if samples > 0 or seconds > EDGE else []
+
+
+def _covered(series: Series, hold: float) -> Array:
+    """Where a series has samples without a gap; its last one holds for `hold` seconds more."""
+    times = series.times
+    if len(times) == 1:
+        return spans_of([(float(times[0]), np.inf)])
+    longest = max(GAP_PERIODS * period_of(times), GAP_SECONDS)
+    cuts = np.flatnonzero(np.diff(times) > longest)
+    starts = times[np.concatenate([[0], cuts + 1])]
+    ends = times[np.concatenate([cuts, [len(times) - 1]])]
+    return np.column_stack([starts, ends + hold])
+
+
+def _judged(program: Program, needs: Needs, whole: Array) -> Array:
+    """Where `judge_when` holds: evaluated at every sample of what it may read, and held."""
+    if program.judge_when is None:
+        return whole
+    told = [s for s in (each.series for each in (*needs.inputs, *needs.signals)) if s is not None]
+    knots = np.unique(np.concatenate([each.times for each in (*needs.series, *told)]))
+    names = (*program.register, *(signal.name for signal in needs.signals))
+    truth = evaluate([program.judge_when], names, _register(program, needs, knots))[..., 0]
+    is_false = ~(np.nan_to_num(truth, nan=0.0) != 0.0)
+    after = np.append(knots[1:], np.inf)
+    before = np.where(knots == knots[0], -np.inf, knots)
+    return without(whole, np.column_stack([before[is_false], after[is_false]]))
+
+
+def _register(program: Program, needs: Needs, times: Array) -> Array:
+    """The register and the signals at each time: (T, r + number of signals)."""
+    columns = {state.name: np.full(len(times), state.hold) for state in program.states}
+    columns |= {control.name: np.full(len(times), control.default) for control in program.controls}
+    columns |= {c.name: np.full(len(times), c.value) for c in program.constants}
+    for state, series in zip(needs.driven, needs.series, strict=True):
+        columns[state.name] = held(series, times)
+    for each in (*needs.inputs, *needs.signals):
+        known = np.full(len(times), each.value)
+        columns[each.name] = known if each.series is None else held(each.series, times)
+    for state in program.states:
+        columns[state.name] = on_circle(state, columns[state.name])
+    return np.stack(list(columns.values()), axis=-1)
+
+
+def on_circle(part: State | Control, values: Array) -> Array:
+    """Values of a periodic state within its domain; others as they are."""
+    if isinstance(part, Control) or part.kind is not Kind.PERIODIC:
+        return values
+    return np.asarray(part.low + np.mod(values - part.low, part.high - part.low))
+
+
+def _domains(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
+    """Where each variable is inside its domain.
+
+    Of a predicted state, a sample outside takes the time from the sample before it to the one
+    after it; of an input, the time for which it is held.
+    """
+    found: list[tuple[State | Control, Series, Array]] = []
+    for state, series in zip(needs.driven, needs.series, strict=True):
+        before = np.append(-np.inf, series.times[:-1])
+        found.append((state, series, before))
+    parts = parts_of(program)
+    told = [(parts[each.name], each.series) for each in needs.inputs if each.series is not None]
+    found += [(part, series, series.times) for part, series in told]
+    return [
+        (f"{part.name} outside its domain", _inside(part, series, before, whole))
+        for part, series, before in found
+    ]
+
+
+def _inside(part: State | Control, series: Series, before: Array, whole: Array) -> Array:
+    if isinstance(part, State) and part.kind is not Kind.CONTINUOUS:
+        return whole
+    slack = EDGE * (part.high - part.low)
+    inside = (series.values >= part.low - slack) & (series.values <= part.high + slack)
+    after = np.append(series.times[1:], np.inf)
+    return without(whole, np.column_stack([before[~inside], after[~inside]]))

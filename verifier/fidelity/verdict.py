@@ -1,0 +1,141 @@
+"""From the figures to the verdict, with its reasons and what to do next."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from runtime.program import Unit
+from verifier.fidelity import sentences
+from verifier.fidelity.needs import Needs
+from verifier.fidelity.segments import Segments
+from verifier.fidelity.study import Study
+from verifier.report.report import Coverage, Standing, VariableResult, Verdict
+from verifier.report.wording import listed, number, percent, seconds
+
+MOST_LOST = 0.1
+"""With a larger share of predictions leaving the domain, there is no PASS."""
+MOST_STEP_ERROR = 0.1
+"""With a larger integration error, as a share of the tolerance, there is no verdict."""
+WHITE = 0.3
+"""Noise with a larger correlation of successive values is worth a note."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """The verdict, why, and what to do next."""
+
+    verdict: Verdict
+    reasons: tuple[str, ...]
+    advice: tuple[str, ...]
+
+
+def decide(
+    study: Study,
+    results: tuple[VariableResult, ...],
+    coverage: Coverage,
+    judged: float,
+    units: dict[str, Unit],
+) -> Finding:
+    """FAIL where a tolerance is shown to be exceeded; PASS where all speaks for it."""
+    bars = _bars(study)
+    if bars:
+        return Finding(Verdict.INCONCLUSIVE, tuple(bars), tuple(_declare(study)))
+    failed = [r for r in results if r.standing is Standing.EXCEEDED]
+    if failed:
+        return _failed(study, failed, units)
+    doubts = [sentences.undecided(r) for r in results if r.standing is Standing.UNDECIDED]
+    advice = [sentences.more_data(r, judged) for r in results if r.standing is Standing.UNDECIDED]
+    if not coverage.is_reached:
+        doubts.append(sentences.uncovered(coverage))
+        advice += sentences.unseen(coverage)
+    doubts += _lost(study)
+    if doubts:
+        return Finding(Verdict.INCONCLUSIVE, tuple(doubts), tuple(dict.fromkeys(advice)))
+    return Finding(Verdict.PASS, tuple(sentences.within(r) for r in results), ())
+
+
+def _failed(study: Study, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:
+    reasons = []
+    for result in failed:
+        reasons.append(sentences.exceeded(result))
+        reasons += sentences.proportion(study, result)
+        reasons += sentences.worst(result, units)
+    advice = (
+        "before blaming the robot, check units, signs and the `delay:` of every entry in `trace:`",
+    )
+    return Finding(Verdict.FAIL, tuple(reasons), advice)
+
+
+def _bars(study: Study) -> list[str]:
+    """What forbids any verdict."""
+    bars = [
+        f"{each.name} is neither in the trace nor declared constant; the figures assume"
+        f" {number(each.value)} (SI), the spec's default"
+        for each in study.plan.needs.unknown
+    ]
+    if study.step_error > MOST_STEP_ERROR:
+        bars.append(
+            "the field could not be integrated accurately enough: halving the step still moves"
+            f" predictions by {percent(study.step_error)} of the tolerance"
+        )
+    return bars
+
+
+def _declare(study: Study) -> list[str]:
+    return [
+        f"log {each.name}, or write `trace: {{{each.name}: {{constant: ...}}}}`"
+        for each in study.plan.needs.unknown
+    ]
+
+
+def _lost(study: Study) -> list[str]:
+    share = float(np.mean(study.shots.is_lost))
+    if share <= MOST_LOST:
+        return []
+    return [
+        f"{percent(share)} of the predictions left the spec's domain, while the robot stayed inside"
+    ]
+
+
+def not_told(needs: Needs) -> str:
+    """Which variables without which nothing can be compared are not in the trace, if any."""
+    names = [*needs.missing, *(each.name for each in needs.signals if not each.is_known)]
+    if not names:
+        return ""
+    verb = "is" if len(names) == 1 else "are"
+    return f"{listed(names)} {verb} not in the trace, and nothing can be compared without"
+
+
+def too_short(needs: Needs, segments: Segments, horizon: float) -> str:
+    """Why no window fits."""
+    first, last = segments.whole
+    if last - first < horizon:
+        return f"the trace covers {first:.1f}-{last:.1f} s, the check needs {horizon:.1f} s"
+    causes = [f"{e.cause} ({seconds(e.seconds)})" for e in segments.exclusions]
+    base = needs.series[needs.base].name
+    return (
+        f"no stretch of {base} is as long as the horizon of {number(horizon)} s;"
+        f" taken out: {listed(causes)}"
+    )
+
+
+def notes_of(study: Study) -> list[str]:
+    """How the figures were made: clocks, windows, noise, losses on the way."""
+    clocks = sorted({series.clock for series in study.plan.needs.series})
+    windows = study.plan.windows
+    notes = [
+        f"times are {listed(clocks)} stamps",
+        f"{len(windows.times)} windows of {number(windows.horizon)} s, one every half horizon",
+    ]
+    lost = int(np.sum(study.shots.is_lost))
+    if lost:
+        notes.append(f"{lost} windows are not counted: their prediction left the spec's domain")
+    for each, noise in zip(study.plan.samples, study.noise, strict=True):
+        if noise.correlation > WHITE:
+            notes.append(
+                f"the noise of {each.state.name} is not white (correlation of successive samples"
+                f" {noise.correlation:.2f}): only its white part is removed from the departure"
+            )
+    return notes

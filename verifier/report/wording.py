@@ -1,0 +1,75 @@
+"""Numbers and quantities as people read them. Values come in SI and leave in the user's unit."""
+
+import math
+
+from runtime.program import Unit
+
+
+def number(value: float) -> str:
+    """Three significant digits, without an exponent where that stays short.
+
+    >>> number(0.0123456), number(1234.5), number(-2.0), number(1e-9), number(math.inf)
+    ('0.0123', '1234', '-2', '1e-09', 'unbounded')
+    """
+    if math.isinf(value):
+        return "unbounded"
+    if 100.0 <= abs(value) < 1e6:
+        return f"{value:.0f}"
+    return f"{value:.3g}"
+
+
+def shown(value: float, unit: Unit) -> str:
+    """A value in its unit, without the unit's name."""
+    return number(value / unit.scale)
+
+
+def quantity(value: float, unit: Unit) -> str:
+    """A value with its unit; a dimensionless one has none.
+
+    >>> quantity(0.5, Unit("deg", 0.01745329)), quantity(0.5, Unit("1", 1.0))
+    ('28.6 deg', '0.5')
+    """
+    return f"{shown(value, unit)}{suffix(unit)}"
+
+
+def span(low: float, high: float, unit: Unit) -> str:
+    """`0.1 to 0.2 m`."""
+    return f"{shown(low, unit)} to {shown(high, unit)}{suffix(unit)}"
+
+
+def suffix(unit: Unit) -> str:
+    """The unit's name after a blank; nothing for a dimensionless one."""
+    return "" if unit.text in {"", "1"} else f" {unit.text}"
+
+
+def percent(share: float) -> str:
+    """A share as whole per cent, never rounded up to 100 or down to 0.
+
+    >>> percent(0.996), percent(0.5), percent(0.001), percent(1.0)
+    ('99 %', '50 %', '1 %', '100 %')
+    """
+    rounded = round(100.0 * share)
+    if 0.0 < share < 1.0:
+        rounded = min(max(rounded, 1), 99)
+    return f"{rounded} %"
+
+
+def seconds(value: float) -> str:
+    """A duration.
+
+    >>> seconds(4.21), seconds(395.1), seconds(7300.0)
+    ('4.21 s', '395 s', '2 h 2 min')
+    """
+    if value < 600.0:
+        return f"{number(value)} s"
+    minutes = round(value / 60.0)
+    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def listed(names: list[str]) -> str:
+    """Names in a sentence.
+
+    >>> listed(["x"]), listed(["x", "y", "v"])
+    ('x', 'x, y and v')
+    """
+    return " and ".join([part for part in (", ".join(names[:-1]), names[-1]) if part])
