@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from specc.figures.quantities import axis_label
-from specc.figures.style import FAINT, SKY, bare, look
+from specc.figures.style import FAINT, SKY, bare, framed, look
 from verifier.report.report import CellAxis, Coverage
 
 SHARE: Final = LinearSegmentedColormap.from_list("share", ["#eef2f6", SKY])
@@ -24,13 +24,13 @@ def draw_coverage(coverage: Coverage) -> Figure:
     """One row of cells, a plane of cells, or the planes of the first pairs of several axes."""
     planes = _planes(coverage)
     with look():
-        height = 1.5 if len(coverage.axes) == 1 else 3.2
-        figure = Figure(figsize=(7.2, height), layout="constrained")
-        panels = figure.subplots(1, len(planes), squeeze=False)[0]
-        for axes, (i, j) in zip(panels, planes, strict=True):
-            _plane(axes, coverage, i, j)
+        figure = Figure(figsize=(7.2, 1.5 if len(coverage.axes) == 1 else 3.2))
+        grid = framed(figure, 1, len(planes), (0.9, 0.1, 0.5, 0.4))
+        grid.update(wspace=0.45)
+        for column, (i, j) in enumerate(planes):
+            _plane(figure.add_subplot(grid[column]), coverage, i, j)
         if len(coverage.axes) <= 2:
-            figure.legend(handles=_legend(coverage.enough), loc="outside upper left", ncols=2)
+            figure.legend(handles=_legend(coverage.enough), loc="upper left", ncols=2)
     return figure
 
 

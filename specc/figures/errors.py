@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from runtime.arrays import Array
 from runtime.program import Unit
 from specc.figures.quantities import axis_label
-from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, look
+from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, framed, look
 from verifier.report.report import Report, VariableResult
 
 SIGNED: Final = LinearSegmentedColormap.from_list("signed", [BLUE, "#dfe3e8", VERMILION])
@@ -25,8 +25,11 @@ def draw_errors(report: Report, variable: VariableResult) -> Figure:
     errors = variable.errors / scale
     known = np.isfinite(errors)
     with look():
-        figure = Figure(figsize=(7.2, 2.7), layout="constrained")
-        over_time, counts = figure.subplots(1, 2, width_ratios=(3, 1), sharey=True)
+        figure = Figure(figsize=(7.2, 2.7))
+        grid = framed(figure, 1, 4, (0.9, 0.1, 0.5, 0.12))
+        over_time = figure.add_subplot(grid[:3])
+        counts = figure.add_subplot(grid[3], sharey=over_time)
+        counts.tick_params(labelleft=False)
         for axes in (over_time, counts):
             _tolerance_band(axes, variable.tolerance / scale)
             bare(axes)
@@ -60,8 +63,8 @@ def draw_error_map(report: Report, variable: VariableResult) -> Figure:
     size = variable.errors / variable.tolerance
     known = np.isfinite(size)
     with look():
-        figure = Figure(figsize=(7.2, 3.1), layout="constrained")
-        axes = figure.subplots()
+        figure = Figure(figsize=(7.2, 3.1))
+        axes = figure.add_subplot(framed(figure, 1, 1, (0.9, 0.1, 0.5, 0.12))[0])
         bare(axes)
         x = _in_unit(report, names[0])
         axes.set_xlabel(axis_label(names[0], _unit(report, names[0])))
@@ -96,7 +99,7 @@ def _colored(figure: Figure, axes: Axes, at: Array, size: Array, name: str) -> N
         linewidths=0.9,
         rasterized=bool(size.size > MANY),
     )
-    bar = figure.colorbar(ScalarMappable(norm, SIGNED), ax=axes, extend="both", aspect=14)
+    bar = figure.colorbar(ScalarMappable(norm, SIGNED), ax=axes, extend="both", aspect=14, pad=0.03)
     bar.set_label(f"error of {name} / tolerance")
     bar.outline.set_visible(False)
     bar.set_ticks([-1.0, 0.0, 1.0], labels=["−1", "0", "1"])

@@ -12,6 +12,7 @@ from typing import Any, Final, Literal, TypeAlias
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpec
 
 INK: Final = "#1b1f24"
 FAINT: Final = "#6b7480"
@@ -73,7 +74,7 @@ def look() -> Iterator[None]:
 
 
 def rendered(figure: Figure, form: Format, dpi: int = 180) -> bytes:
-    """The picture as a file's bytes; equal numbers give equal bytes."""
+    """The picture as a file's bytes, cropped to what is drawn; equal numbers give equal bytes."""
     buffer = BytesIO()
     with look():
         figure.savefig(
@@ -85,6 +86,33 @@ def rendered(figure: Figure, form: Format, dpi: int = 180) -> bytes:
             pad_inches=0.08,
         )
     return buffer.getvalue()
+
+
+def rendered_svg(figure: Figure) -> str:
+    """The picture as SVG text, whole and without a background, for a page that has its own."""
+    buffer = BytesIO()
+    with look():
+        figure.savefig(buffer, format="svg", metadata=METADATA["svg"], transparent=True)
+    return buffer.getvalue().decode("utf-8")
+
+
+def framed(
+    figure: Figure, rows: int, columns: int, margins: tuple[float, float, float, float]
+) -> GridSpec:
+    """A grid of panels within margins in inches: left, right, bottom, top.
+
+    Stated margins cost nothing; matplotlib's automatic layouts draw every figure twice.
+    """
+    width, height = figure.get_size_inches()
+    left, right, bottom, top = margins
+    return figure.add_gridspec(
+        rows,
+        columns,
+        left=left / width,
+        right=1.0 - right / width,
+        bottom=bottom / height,
+        top=1.0 - top / height,
+    )
 
 
 def bare(axes: Axes) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, look
+from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, framed, look
 from verifier.report.report import HorizonFigure, Report, Standing
 
 COLORS: Final = {
@@ -22,8 +22,10 @@ WIDEST: Final = 3.0
 def draw_verdicts(report: Report) -> Figure:
     """A row per variable: the departure at the horizon with its interval, beside the tolerance."""
     with look():
-        figure = Figure(figsize=(7.2, 0.9 + 0.42 * len(report.variables)), layout="constrained")
-        axes = figure.subplots()
+        figure = Figure(figsize=(7.2, 0.7 + 0.42 * len(report.variables)))
+        longest = max(len(variable.name) for variable in report.variables)
+        left = 0.25 + min(2.0, 0.085 * longest)
+        axes = figure.add_subplot(framed(figure, 1, 1, (left, 0.2, 0.5, 0.1))[0])
         bare(axes)
         axes.spines["left"].set_visible(False)
         axes.tick_params(axis="y", length=0)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from specc.figures.quantities import axis_label, seconds
-from specc.figures.style import BLUE, FAINT, INK, bare, look
+from specc.figures.style import BLUE, FAINT, INK, bare, framed, look
 from verifier.report.report import VariableResult, WindowView
 
 MOST: Final = 6
@@ -23,15 +23,15 @@ def draw_windows(variable: VariableResult) -> Figure:
     columns = min(COLUMNS, max(1, len(views)))
     rows = -(-len(views) // columns) or 1
     with look():
-        figure = Figure(figsize=(7.2, 0.75 + 1.65 * rows), layout="constrained")
-        panels = figure.subplots(rows, columns, squeeze=False)
-        for axes, view in zip(panels.flat, views, strict=False):
-            _panel(axes, variable, view)
-        for axes in panels.flat[len(views) :]:
-            axes.set_visible(False)
-        figure.supxlabel("time since the window's start [s]", fontsize=9.0)
-        figure.supylabel(axis_label(variable.name, variable.unit), fontsize=9.0)
-        figure.legend(handles=_legend(), loc="outside upper left", ncols=3)
+        figure = Figure(figsize=(7.2, 0.75 + 1.65 * rows))
+        grid = framed(figure, rows, columns, (0.85, 0.1, 0.55, 0.5))
+        grid.update(wspace=0.32, hspace=0.38)
+        for k, view in enumerate(views):
+            _panel(figure.add_subplot(grid[divmod(k, columns)]), variable, view)
+        figure.supxlabel("time since the window's start [s]", fontsize=9.0, y=0.02)
+        label = axis_label(variable.name, variable.unit)
+        figure.supylabel(label, fontsize=9.0, x=0.01)
+        figure.legend(handles=_legend(), loc="upper left", ncols=3, borderaxespad=0.2)
     return figure
 
 

@@ -156,7 +156,7 @@ def _merged(view: Slice, points: Array, distance: float) -> Array:
 
 def _away_from(view: Slice, points: Array, others: Array) -> Array:
     near = [bool(np.any(_near(view, others, point, BLURRED))) for point in points]
-    return points[~np.array(near, dtype=bool)]
+    return np.asarray(points[~np.array(near, dtype=bool)])
 
 
 def _near(view: Slice, points: Array, point: Array, distance: float) -> Booleans:

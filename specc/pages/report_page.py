@@ -1,0 +1,171 @@
+"""The report of a verification as one HTML file that needs nothing else.
+
+The page's contents are gathered as data; the template only lays them out, and escapes every
+text, because names in it come from logs and specs of strangers.
+"""
+
+from datetime import UTC, datetime
+from typing import Final
+
+import jinja2
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from specc import __version__
+from specc.figures.coverage import draw_coverage
+from specc.figures.errors import draw_error_map, draw_errors, places_shown
+from specc.figures.quantities import number, quantity, seconds
+from specc.figures.verdicts import draw_verdicts
+from specc.figures.windows import draw_windows
+from specc.pages.inline_svg import inline_svg
+from specc.pages.page import Page, Plot, Row, Table, VariablePart
+from specc.pages.sentences import (
+    about_coverage,
+    about_variable,
+    how_to_read_coverage,
+    how_to_read_errors,
+    how_to_read_the_map,
+    how_to_read_the_overview,
+    how_to_read_the_table,
+    how_to_read_windows,
+    ranged,
+)
+from verifier.report.report import Report, TraceIdentity, VariableResult, Verdict
+
+SIGNS: Final = {Verdict.PASS: "✓", Verdict.FAIL: "✗", Verdict.INCONCLUSIVE: "?"}
+COLUMNS: Final = ("tolerance", "departure", "its interval", "RMSE", "mean error", "windows")
+
+
+def report_page(report: Report) -> str:
+    """The report as self-contained HTML: the verdict first, its evidence after it."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("specc.pages"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    # The style sheet is ours; within <style> it must not be escaped.
+    sheet = environment.get_template("report.css").render()
+    template = environment.get_template("report.html.j2")
+    return template.render(page=gathered(report), style=Markup(sheet))  # noqa: S704
+
+
+def gathered(report: Report) -> Page:
+    """What the page says, in the order in which it is read."""
+    coverage = report.coverage
+    return Page(
+        title=f"{report.verdict.upper()}: {report.spec.name}",
+        verdict=str(report.verdict),
+        sign=SIGNS[report.verdict],
+        headline=f"{report.spec.name} against {report.trace.source}",
+        reasons=report.reasons,
+        columns=COLUMNS,
+        rows=tuple(map(_row, report.variables)),
+        how=how_to_read_the_table(report),
+        overview=_overview(report),
+        variables=tuple(_part(report, i, v) for i, v in enumerate(report.variables)),
+        coverage=about_coverage(coverage),
+        coverage_figure=coverage
+        and _plot(draw_coverage(coverage), "coverage", how_to_read_coverage(coverage)),
+        exclusions=_exclusions(report),
+        losses=_losses(report),
+        notes=report.notes,
+        provenance=_provenance(report),
+        advice=report.advice,
+    )
+
+
+def _overview(report: Report) -> Plot | None:
+    if not report.variables:
+        return None
+    return _plot(draw_verdicts(report), "overview", how_to_read_the_overview(report))
+
+
+def _row(variable: VariableResult) -> Row:
+    at, unit = variable.declared, variable.unit
+    return Row(
+        name=variable.name,
+        standing=str(variable.standing),
+        cells=(
+            quantity(variable.tolerance, unit),
+            quantity(at.departure, unit),
+            ranged(at.interval, unit),
+            quantity(at.rmse, unit),
+            quantity(variable.mean, unit),
+            str(at.windows),
+        ),
+    )
+
+
+def _part(report: Report, index: int, variable: VariableResult) -> VariablePart:
+    name = f"v{index}"
+    figures: list[Plot] = []
+    if variable.views:
+        windows = draw_windows(variable)
+        figures.append(_plot(windows, f"{name}-windows", how_to_read_windows(variable)))
+    if variable.errors.size:
+        errors = draw_errors(report, variable)
+        figures.append(_plot(errors, f"{name}-errors", how_to_read_errors(report, variable)))
+        places = places_shown(report)
+        if places:
+            caption = how_to_read_the_map(places)
+            figures.append(_plot(draw_error_map(report, variable), f"{name}-map", caption))
+    return VariablePart(
+        name=variable.name,
+        sentences=about_variable(report, variable),
+        figures=tuple(figures),
+        horizons=_horizons(variable),
+    )
+
+
+def _plot(figure: Figure, name: str, caption: str) -> Plot:
+    return Plot(inline_svg(figure, name, caption), caption)
+
+
+def _horizons(variable: VariableResult) -> Table | None:
+    if len(variable.horizons) < 2:
+        return None
+    rows = tuple(
+        (
+            seconds(at.horizon),
+            quantity(at.rmse, variable.unit),
+            quantity(at.departure, variable.unit),
+            ranged(at.interval, variable.unit),
+            str(at.windows),
+        )
+        for at in variable.horizons
+    )
+    return Table(("after", "RMSE", "departure", "its interval", "windows"), rows)
+
+
+def _exclusions(report: Report) -> Table | None:
+    rows = tuple((e.cause, seconds(e.seconds), str(e.samples)) for e in report.exclusions)
+    return Table(("why", "time", "samples"), rows) if rows else None
+
+
+def _losses(report: Report) -> Table | None:
+    rows = tuple((loss.cause, str(loss.count), loss.detail) for loss in report.losses)
+    return Table(("what", "how often", "where"), rows) if rows else None
+
+
+def _provenance(report: Report) -> tuple[tuple[str, str], ...]:
+    trace = report.trace
+    return (
+        ("spec", f"{report.spec.name} ({report.spec.file})"),
+        ("spec text, SHA-256", report.spec.sha256),
+        ("trace", trace.source),
+        ("recorded", _when(trace)),
+        ("length", f"{seconds(trace.duration)}, of which {seconds(trace.judged)} were judged"),
+        ("horizon", seconds(report.horizon)),
+        ("confidence", f"{number(100.0 * report.confidence)} %"),
+        ("specc", __version__),
+    )
+
+
+def _when(trace: TraceIdentity) -> str:
+    """The log's own clock as a date, where it is set; clocks that start in 1970 are not."""
+    year = 365.25 * 86400.0
+    if not year < trace.start < 200.0 * year:
+        return f"clock of the log at the first sample: {seconds(trace.start)}"
+    return f"{datetime.fromtimestamp(trace.start, UTC):%Y-%m-%d %H:%M:%S} UTC"
