@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
+from spec_schema.diagnostics import SpecError
 from verifier.traces.csv_time import Clocked, find_clock
-from verifier.traces.faults import file_fault
+from verifier.traces.faults import file_fault, nearest_help
 from verifier.traces.log import Sheet
 from verifier.traces.trace import Loss
 
@@ -35,9 +36,7 @@ def read_csv(path: Path) -> Sheet:
     rows = _read_rows(path, header, body, delimiter)
     clocked = find_clock(rows.columns)
     if clocked is None:
-        names = ", ".join(rows.columns)
-        help_text = f"name one column t, time, timestamp or stamp (_s, _ms, _ns)\ncolumns: {names}"
-        raise file_fault(path, "V309", "no column holds the time", help_text)
+        raise _no_clock(path, tuple(rows.columns))
     losses = [*rows.losses]
     if missing := int((~clocked.valid).sum()):
         losses.append(Loss("rows without a time", missing, f"column '{clocked.column}'"))
@@ -54,6 +53,14 @@ def read_csv(path: Path) -> Sheet:
         losses=tuple(losses),
         notes=(*notes, *rows.notes),
     )
+
+
+def _no_clock(path: Path, names: Sequence[str]) -> SpecError:
+    named = "name one column t, time, timestamp or stamp (or stamp_ms, stamp_ns, ...)"
+    if all(re.match(r"[-+]?[.\d]", name) for name in names):
+        return file_fault(path, "V309", "the first line holds numbers, not names", named)
+    listed = nearest_help("", names, "columns")
+    return file_fault(path, "V309", "no column holds the time", f"{named}\n{listed}")
 
 
 @final

@@ -3,6 +3,7 @@
 The texts come out of the log, from strangers: they are parsed, never executed.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias, final
@@ -127,15 +128,15 @@ def _parsed(name: str, schema_encoding: str, text: str) -> Mapping[str, tuple[ob
 
 
 def _parse(name: str, schema_encoding: str, text: str) -> Typesdict:
-    parse = {
-        "ros1msg": get_types_from_msg,
-        "ros2msg": get_types_from_msg,
-    }.get(schema_encoding)
+    text = text.replace("\r\n", "\n")
     try:
-        if parse is not None:
-            return parse(text.replace("\r\n", "\n"), name)
+        if schema_encoding in {"ros1msg", "ros2msg"}:
+            return get_types_from_msg(text, name)
         if schema_encoding == "ros2idl":
-            return get_types_from_idl(text.replace("\r\n", "\n"))
+            # Several files, each after a line of `=` and one that names it.
+            parts = re.split(r"^=+\n(?:IDL: .*\n)?", text, flags=re.MULTILINE)
+            parsed = [get_types_from_idl(part) for part in parts if part.strip()]
+            return {key: value for types in parsed for key, value in types.items()}
     except (TypesysError, ValueError, KeyError, IndexError, TypeError, RecursionError) as error:
         raise DefinitionError(f"the definition of {name} can't be read") from error
     raise DefinitionError(f"definitions written as {schema_encoding!r} are not supported")

@@ -95,14 +95,18 @@ def column_text(name: str) -> str:
 
 def steps_text(steps: Steps) -> str:
     """`pose.position[0].x`, as it stands after the topic and its dot."""
-    parts = [f"[{step}]" if isinstance(step, int) else f".{_quoted(step)}" for step in steps]
-    return "".join(parts).removeprefix(".")
+    return _below(steps).removeprefix(".")
 
 
 def path_text(topic: str, steps: Steps) -> str:
     """The whole path, quoted where the topic needs it."""
     name = topic if _TOPIC.fullmatch(topic) else f'"{topic}"'
-    return f"{name}.{steps_text(steps)}"
+    return name + _below(steps)
+
+
+def _below(steps: Steps) -> str:
+    parts = [f"[{step}]" if isinstance(step, int) else f".{_quoted(step)}" for step in steps]
+    return "".join(parts)
 
 
 def _quoted(name: str) -> str:

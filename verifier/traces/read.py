@@ -13,13 +13,13 @@ from spec_schema.diagnostics import Diagnostic, SpecError
 from verifier.traces.bindings import Bound, resolve, wanted_topics
 from verifier.traces.cleaning import Ordering, order
 from verifier.traces.clock import Clock, choose_clocks, stamp_fault
-from verifier.traces.faults import binding_diagnostic, file_diagnostic
+from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fault
 from verifier.traces.fields import FieldError
-from verifier.traces.log import LogFile, Sheet, Wanted
+from verifier.traces.log import LogFile, MessageLog, Sheet, Wanted
 from verifier.traces.open_log import open_log
 from verifier.traces.samples import Samples, check_topic, sample_sheet, sample_topic
 from verifier.traces.trace import Loss, Series, Trace
-from verifier.traces.values import Measured, NotNumbersError, measured
+from verifier.traces.values import Meaning, Measured, NotNumbersError, measured
 
 ClockWish: TypeAlias = Literal["auto", "sensor", "log"]
 
@@ -31,6 +31,8 @@ def read_trace(path: Path, program: Program, clock: ClockWish = "auto") -> Trace
     topics on one clock. Raises SpecError V301 to V312, all at once, where nothing can be judged.
     """
     log = open_log(path, Wanted(wanted_topics(program)))
+    if isinstance(log, MessageLog) and not log.streams:
+        raise file_fault(path, "V306", "no message can be read", _damage(log.losses))
     bound = resolve(program, log)
     topics = _sample(program, log, bound)
     if clock == "sensor":
@@ -38,7 +40,7 @@ def read_trace(path: Path, program: Program, clock: ClockWish = "auto") -> Trace
     # The time column of a sheet is all there is, and already noted.
     clocks = choose_clocks(tuple(topics.values()), "log" if isinstance(log, Sheet) else clock)
     runs = {name: _run(samples, clocks.of[name]) for name, samples in topics.items()}
-    readings = _readings(program, bound, topics, runs)
+    readings = _readings(program, bound, topics, runs, log.losses)
     start = min((int(reading.times[0]) for reading in readings), default=0)
     return Trace(
         source=str(path),
@@ -46,7 +48,7 @@ def read_trace(path: Path, program: Program, clock: ClockWish = "auto") -> Trace
         constants={b.name: b.constant for b in program.bindings if b.constant is not None},
         start=start * 1e-9,
         losses=_losses(log, topics, runs, readings),
-        notes=_notes(log, topics, runs, clocks.notes),
+        notes=_notes(log, topics, runs, readings, clocks.notes),
     )
 
 
@@ -70,6 +72,7 @@ class _Reading:
     times: Integers
     values: Array
     losses: tuple[Loss, ...]
+    notes: tuple[str, ...]
 
 
 def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str, Samples]:
@@ -124,6 +127,7 @@ def _readings(
     bound: Sequence[Bound],
     topics: Mapping[str, Samples],
     runs: Mapping[str, _Run],
+    losses: Sequence[Loss],
 ) -> list[_Reading]:
     readings: list[_Reading] = []
     problems: list[Diagnostic] = []
@@ -137,7 +141,8 @@ def _readings(
             continue
         if reading is None:
             message = f"no usable sample stands at {one.binding.path}"
-            problems.append(binding_diagnostic(program, one.binding, "V306", message))
+            lost = _damage([*losses, *_topic_losses(one.topic, topics, runs)])
+            problems.append(binding_diagnostic(program, one.binding, "V306", message, help=lost))
         else:
             readings.append(reading)
     if problems:
@@ -153,7 +158,7 @@ def _reading(
         return None
     run = runs[bound.topic]
     state = next((s for s in program.states if s.name == bound.binding.name), None)
-    found = _measured(bound, state, topics[bound.topic], run)
+    found = _measured(program, bound, state, topics[bound.topic], run)
     finite: Booleans = np.isfinite(found.values)
     if not finite.any():
         return None
@@ -161,13 +166,19 @@ def _reading(
     if state is not None and state.kind is Kind.PERIODIC:
         values = np.unwrap(values, period=state.high - state.low)
     delay = round(bound.binding.delay * 1e9)
-    return _Reading(bound, run.clock, run.times[finite] - delay, values, found.losses)
+    return _Reading(bound, run.clock, run.times[finite] - delay, values, found.losses, found.notes)
 
 
-def _measured(bound: Bound, state: State | None, samples: Samples, run: _Run) -> Measured:
-    values = bound.binding.values or (state.values if state else ())
-    column = samples.columns[bound.column].rows(run.ordering.rows)
-    return measured(bound.binding, values, column, derived=bound.derived)
+def _measured(
+    program: Program, bound: Bound, state: State | None, samples: Samples, run: _Run
+) -> Measured:
+    binding = bound.binding
+    meaning = Meaning(
+        texts=binding.values or (state.values if state else ()),
+        is_signal=binding.name not in program.register,
+        derived=bound.derived,
+    )
+    return measured(binding, meaning, samples.columns[bound.column].rows(run.ordering.rows))
 
 
 def _series(reading: _Reading, start: int) -> Series:
@@ -183,24 +194,35 @@ def _losses(
     runs: Mapping[str, _Run],
     readings: Sequence[_Reading],
 ) -> tuple[Loss, ...]:
-    found = [*log.losses]
-    for topic, samples in topics.items():
-        found += [*samples.losses, *runs[topic].ordering.losses]
-    for reading in readings:
-        found += reading.losses
-    return tuple(found)
+    by_topic = (loss for topic in topics for loss in _topic_losses(topic, topics, runs))
+    by_variable = (loss for reading in readings for loss in reading.losses)
+    return (*log.losses, *by_topic, *by_variable)
+
+
+def _topic_losses(
+    topic: str, topics: Mapping[str, Samples], runs: Mapping[str, _Run]
+) -> tuple[Loss, ...]:
+    return (*topics[topic].losses, *runs[topic].ordering.losses) if topic in topics else ()
+
+
+def _damage(losses: Sequence[Loss]) -> str:
+    """The losses as help, one a line."""
+    return "\n".join(f"{loss.cause}: {loss.count} ({loss.detail})" for loss in losses)
 
 
 def _notes(
     log: LogFile,
     topics: Mapping[str, Samples],
     runs: Mapping[str, _Run],
+    readings: Sequence[_Reading],
     clock_notes: Sequence[str],
 ) -> tuple[str, ...]:
     notes = [*log.notes, *clock_notes]
     for topic, samples in topics.items():
         notes += runs[topic].ordering.notes
         notes += _zero_note(samples)
+    for reading in readings:
+        notes += reading.notes
     return tuple(notes)
 
 

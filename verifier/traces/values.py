@@ -12,6 +12,7 @@ from verifier.traces.columns import Column
 from verifier.traces.faults import nearest_help
 from verifier.traces.trace import Loss
 
+MOST_NOTES = 20
 _LOGIC = {"true": 1.0, "false": 0.0, "True": 1.0, "False": 0.0, "TRUE": 1.0, "FALSE": 0.0}
 
 
@@ -32,41 +33,62 @@ class Measured:
 
     values: Array
     losses: tuple[Loss, ...]
+    notes: tuple[str, ...] = ()
 
 
-def measured(
-    binding: Binding, values: tuple[str, ...], column: Column, *, derived: bool
-) -> Measured:
-    """The column as the binding means it; `values` names the states of a discrete variable.
+@final
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What the values of a column are.
 
-    A derived angle is in radians whatever the binding's unit is. Raises NotNumbersError.
+    texts: names of a discrete variable's values, or of a signal's. is_signal: a text that is not
+    among them is then some other value (-1), not a lost one. derived: the values are angles in
+    radians, whatever the binding's unit is.
     """
+
+    texts: tuple[str, ...]
+    is_signal: bool
+    derived: bool
+
+
+def measured(binding: Binding, meaning: Meaning, column: Column) -> Measured:
+    """The column as the binding means it; raises NotNumbersError."""
     if column.texts is not None:
         texts = {text for text in column.texts if text}
-        if values and texts & set(values):
-            return _indices(binding, values, column.texts)
+        if texts & set(meaning.texts):
+            return _indices(binding, meaning, column.texts)
         if texts and texts <= _LOGIC.keys():
             return Measured(np.array([_LOGIC.get(text or "", np.nan) for text in column.texts]), ())
         if texts and not np.isfinite(column.numbers).any():
-            raise _not_numbers(binding, values, sorted(texts))
-    unit = 1.0 if derived else binding.unit.scale
+            raise _not_numbers(binding, meaning.texts, sorted(texts))
+    unit = 1.0 if meaning.derived else binding.unit.scale
     numbers = binding.scale * column.numbers * unit + binding.offset
     missing = int((~np.isfinite(numbers)).sum())
-    losses = (
-        (Loss("no finite value", missing, f"{binding.name} at {binding.path}"),) if missing else ()
-    )
-    return Measured(numbers, losses)
+    where = f"{binding.name} at {binding.path}"
+    losses = (Loss("no finite value", missing, where),) if missing else ()
+    notes = ()
+    if meaning.derived and binding.unit.scale != 1.0:
+        notes = (f"{where}: in radians, the unit {binding.unit.text} is not applied",)
+    return Measured(numbers, losses, notes)
 
 
-def _indices(binding: Binding, values: tuple[str, ...], texts: tuple[str | None, ...]) -> Measured:
-    index = {text: float(i) for i, text in enumerate(values)}
-    numbers = np.array([index.get(text or "", np.nan) for text in texts], dtype=np.float64)
+def _indices(binding: Binding, meaning: Meaning, texts: tuple[str | None, ...]) -> Measured:
+    index = {text: float(i) for i, text in enumerate(meaning.texts)}
+    other = -1.0 if meaning.is_signal else np.nan
+    numbers = [index.get(text, other) if text else np.nan for text in texts]
     unknown = Counter(text or "" for text in texts if text not in index)
-    losses = []
+    empty = unknown.pop("", 0)
+    losses = [Loss("no value", empty, f"{binding.name} at {binding.path}")] if empty else []
+    notes = []
     for text, count in sorted(unknown.items()):
-        known = nearest_help(text, values, "declared").splitlines()[0]
-        losses.append(Loss("undeclared value", count, f"{binding.name}: '{text}' ({known})"))
-    return Measured(numbers, tuple(losses))
+        if meaning.is_signal:
+            notes.append(
+                f"{binding.name}: '{text}' in {count} samples, taken as none of its values"
+            )
+        else:
+            known = nearest_help(text, meaning.texts, "declared").splitlines()[0]
+            losses.append(Loss("undeclared value", count, f"{binding.name}: '{text}' ({known})"))
+    return Measured(np.array(numbers, dtype=np.float64), tuple(losses), tuple(notes[:MOST_NOTES]))
 
 
 def _not_numbers(binding: Binding, values: tuple[str, ...], texts: list[str]) -> NotNumbersError:
