@@ -11,6 +11,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans, frozen
 from runtime.code import Code
+from runtime.kernels.blocks import LARGEST
 from runtime.kernels.tape import Tape
 from runtime.machine import run_tape
 from runtime.program import Kind, Program, State
@@ -37,15 +38,14 @@ class Source(StrEnum):
 class Flow:
     """A program, packed: register (r,) = states (n), controls (p), constants.
 
-    lows, highs: (r,) the domain of each entry; infinite for periodic and discrete states and for
-    constants. defaults: (r,). moves: (n,) whether a state has a rate at all. is_map: the tape
+    domain: (2, r) lowest and highest value of each entry; for periodic and discrete states and for
+    constants all finite numbers. defaults: (r,). moves: (n,) whether a state has a rate at all. is_map: the tape
     gives next states, not rates.
     """
 
     program: Program
     tape: Tape
-    lows: Array
-    highs: Array
+    domain: Array
     defaults: Array
     moves: Booleans
     is_map: bool
@@ -60,12 +60,10 @@ def flow_of(program: Program, source: Source = Source.TABLES) -> Flow:
         ValueError: the field has no formula, and `source` asks for it.
     """
     results = tuple(_rate(program, index, source) for index in range(len(program.states)))
-    lows, highs = _domain(program)
     return Flow(
         program=program,
         tape=pack(results, program.register, program.field.tables),
-        lows=lows,
-        highs=highs,
+        domain=_domain(program),
         defaults=frozen(
             [
                 *(state.hold for state in program.states),
@@ -136,7 +134,7 @@ def _results(flow: Flow, x: Array, u: Array) -> Array:
     register = registers(flow, x, u)
     results = run_tape(flow.tape, register)
     # One comparison for both edges that is false for NaN, too.
-    inside = np.all((flow.lows <= register) & (register <= flow.highs), axis=-1)
+    inside = np.all((flow.domain[0] <= register) & (register <= flow.domain[1]), axis=-1)
     return np.where(inside[..., np.newaxis], results, np.nan)
 
 
@@ -149,7 +147,7 @@ def _rate(program: Program, index: int, source: Source) -> Code | Sum:
     if state.name not in field.driven:
         return state.closure or still
     component = field.driven.index(state.name)
-    if source is Source.TABLES and field.tables:
+    if source is Source.TABLES and field.terms:
         terms = [term for term in field.terms if term.component == component]
         return Sum(tuple((term.coefficient, term.table, term.column) for term in terms))
     if field.formula is None:
@@ -163,20 +161,22 @@ def _moves(program: Program, state: State) -> bool:
     return state.name in program.field.driven or state.closure is not None
 
 
-def _domain(program: Program) -> tuple[Array, Array]:
-    """The edges for every entry of the register."""
+def _domain(program: Program) -> Array:
     limited = [
         *((s.low, s.high) if s.kind is Kind.CONTINUOUS else None for s in program.states),
         *((control.low, control.high) for control in program.controls),
         *(None for _ in program.constants),
     ]
-    edges = np.array([edge or (-np.inf, np.inf) for edge in limited]).reshape(-1, 2)
-    return frozen(edges[:, 0]), frozen(edges[:, 1])
+    edges = [edge or (-LARGEST, LARGEST) for edge in limited]
+    return frozen(np.reshape(edges, (-1, 2)).T)
 
 
 def _difference(flow: Flow, x: Array, u: Array, j: int, step: float) -> Array:
     """The derivative (..., n) of all rates by state j, from three points `step` apart."""
-    lacks_low, lacks_high = x[..., j] - step < flow.lows[j], x[..., j] + step > flow.highs[j]
+    lacks_low, lacks_high = (
+        x[..., j] - step < flow.domain[0, j],
+        x[..., j] + step > flow.domain[1, j],
+    )
     shift = np.where(lacks_low, 1, np.where(lacks_high, -1, 0))
     points = np.repeat(x[..., np.newaxis, :], 3, axis=-2)
     points[..., j] += step * (shift[..., np.newaxis] + np.array([-1, 0, 1]))

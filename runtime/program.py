@@ -159,7 +159,8 @@ class Table:
 class Term:
     """`coefficient(register) * tables[table][column]`, added to the rate of `driven[component]`.
 
-    The coefficient reads only controls, constants and discrete states.
+    The coefficient reads only controls, constants and discrete states. A `table` of -1 stands
+    for the constant 1: the term is its coefficient.
     """
 
     component: int

@@ -1,0 +1,48 @@
+# `make` alone lists the targets. Each sets up what it needs: a .venv from the pinned constraints.
+PYTHON ?= python3
+BIN := .venv/bin
+SOURCES := spec_schema compiler verifier runtime lcs specc tests
+
+.PHONY: help demo test check format bless bench schema clean
+.DEFAULT_GOAL := help
+
+help: ## list the targets
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
+
+.venv/ready: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@touch $@
+
+demo: .venv/ready ## set up, then verify a real robot's drive and draw a phase portrait
+	mkdir -p out
+	$(BIN)/specc portrait specs/van_der_pol.yaml -o out/van_der_pol.svg
+	$(BIN)/specc verify specs/recordings/husky/husky.mcap -o out/husky.html
+
+test: .venv/ready ## set up, then run the tests
+	$(BIN)/pytest -n auto
+
+check: .venv/ready ## format, lint, types, import contracts, tests
+	$(BIN)/ruff format --check $(SOURCES)
+	$(BIN)/ruff check $(SOURCES)
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -n auto
+
+format: .venv/ready ## format the code and sort the imports
+	$(BIN)/ruff format $(SOURCES)
+	$(BIN)/ruff check --fix $(SOURCES)
+
+bless: .venv/ready ## rewrite the golden files from what comes out; read the diff
+	$(BIN)/pytest -q --bless
+
+schema: .venv/ready ## rewrite the JSON Schemas in docs/schema
+	$(BIN)/specc schema behavior > docs/schema/behavior.schema.json
+	$(BIN)/specc schema project > docs/schema/project.schema.json
+
+bench: .venv/ready ## table lookup beside its peers, in one run
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	$(BIN)/python tests/bench/lookup.py
+
+clean: ## remove what the targets made
+	rm -rf .venv out .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,0 +1,151 @@
+"""The compiler in one screen: text, spec, checks, plan, tables, program.
+
+load            text -> spec with places                          spec_schema.load
+declare         units, domains, defaults                          1
+read            expressions, names, dimensions                    2
+references      names used and unused                             3
+lower parts     outputs, fidelity, bindings                       4
+plan            what is to be tabulated                           5
+lower field     tables with measured error bounds                 6
+assemble        the program
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias, final
+
+from compiler.check import Checked, check_behavior
+from compiler.lower_field import formula_codes, lower_field, measured, settings_of
+from compiler.lower_parts import (
+    lower_feasibility,
+    lower_judge_when,
+    lower_outputs,
+    lower_realizes,
+    lower_states,
+    origin_of,
+)
+from compiler.plan import Plan, plan_formula, plan_sampled
+from compiler.python_module import ModuleError
+from compiler.quantities import SECOND, si_value
+from compiler.tabulate import TableError
+from runtime.program import Field, Program
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.field_forms import Formula, Step
+from spec_schema.load import Loaded, load
+
+Progress: TypeAlias = Callable[[str, int, int], None]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Compiled:
+    """A program, and the warnings on the way to it."""
+
+    program: Program
+    warnings: tuple[Diagnostic, ...]
+
+
+def compile_file(path: Path, progress: Progress) -> Compiled:
+    """Compile the behavior spec at `path`.
+
+    Raises:
+        SpecError: with everything that is wrong with it.
+    """
+    return compile_loaded(load(path), progress)
+
+
+def compile_loaded(loaded: Loaded, progress: Progress) -> Compiled:
+    """Compile a behavior spec that has been read."""
+    if not isinstance(loaded.spec, BehaviorSpec):
+        message = f"a {loaded.spec.kind} is not compiled; a behavior is"
+        raise SpecError([loaded.error("S200", ("kind",), message, "name a behavior spec")])
+    checked = check_behavior(loaded, loaded.spec)
+    _stop_at_errors(checked)
+    field = _field(checked, progress)
+    program = measured(_assembled(checked, field))
+    _stop_at_errors(checked)
+    warnings = tuple(d for d in checked.findings.diagnostics if d.severity is Severity.WARNING)
+    return Compiled(program, warnings)
+
+
+def _stop_at_errors(checked: Checked) -> None:
+    if checked.findings.has_errors:
+        raise SpecError(checked.findings.diagnostics)
+
+
+def _field(checked: Checked, progress: Progress) -> Field:
+    """The field of a checked spec, tabulated."""
+    spec, declared, findings = checked.spec, checked.declared, checked.findings
+    form = spec.field.form
+    name = type(form).__name__.lower()
+    every = 0.0
+    if isinstance(form, Step):
+        every = si_value(form.every, SECOND, ("field", "step", "every"), findings) or 0.0
+        if every <= 0.0:
+            findings.error(
+                "S212",
+                ("field", "step", "every"),
+                f"a step must take some time (got {form.every})",
+                "write `every: 0.1 s`",
+            )
+    settings = settings_of(spec, declared, findings)
+    _stop_at_errors(checked)
+    driven = tuple(state.name for state in declared.driven)
+    field = Field(driven, name, every, (), (), (), None, checked.loaded.origin(("field",)))
+    if isinstance(form, Formula | Step):
+        field = formula_codes(checked.expressions.rates, field)
+    if spec.table.keep == "code":
+        return _kept_as_code(checked, field)
+    try:
+        tables, terms, bounds = lower_field(_plan(checked), settings, name, declared, progress)
+    except TableError as error:
+        findings.error(error.code, _path_of(error, checked), error.message, error.remedy, key=True)
+    except ModuleError as error:
+        findings.error("S233", ("field", "module", "call"), error.message, error.remedy)
+    _stop_at_errors(checked)
+    return Field(driven, name, every, tables, terms, bounds, field.formula, field.origin)
+
+
+def _plan(checked: Checked) -> Plan:
+    if isinstance(checked.spec.field.form, Formula | Step):
+        return plan_formula(checked.expressions.rates, checked.declared)
+    beside = Path(checked.loaded.source.name).resolve().parent
+    plan = plan_sampled(checked.spec, checked.declared, beside, checked.findings)
+    _stop_at_errors(checked)
+    assert plan is not None, "a plan that can't be made leaves an error"
+    return plan
+
+
+def _kept_as_code(checked: Checked, field: Field) -> Field:
+    if field.formula is None:
+        message = f"a field given as {field.form} has no formula that could be kept as code"
+        checked.findings.error("S246", ("table", "keep"), message, "write `keep: tables`")
+    return field
+
+
+def _path_of(error: TableError, checked: Checked) -> tuple[str, ...]:
+    """The declaration of the axis at fault, else the field."""
+    if error.axis is None:
+        return ("field",)
+    return ("state" if error.axis in checked.spec.state else "control", error.axis)
+
+
+def _assembled(checked: Checked, field: Field) -> Program:
+    spec, declared, expressions = checked.spec, checked.declared, checked.expressions
+    return Program(
+        name=spec.name,
+        about=spec.about or "",
+        states=lower_states(declared, expressions.closures),
+        controls=declared.controls,
+        constants=declared.constants,
+        outputs=lower_outputs(spec, expressions, checked.loaded),
+        field=field,
+        fidelity=checked.fidelity,
+        bindings=checked.bindings,
+        judge_when=lower_judge_when(expressions),
+        realizes=lower_realizes(spec, checked.loaded),
+        feasibility=lower_feasibility(spec),
+        source=origin_of(checked.loaded),
+    )

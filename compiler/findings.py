@@ -1,0 +1,43 @@
+"""What the passes find wrong: gathered, never raised before a pass is through."""
+
+from typing import final
+
+from spec_schema.diagnostics import Diagnostic, Severity
+from spec_schema.faults import Fault
+from spec_schema.load import Loaded
+from spec_schema.places import Path
+
+
+@final
+class Findings:
+    """The diagnostics of one spec, as the passes add to them."""
+
+    def __init__(self, loaded: Loaded) -> None:
+        self._loaded = loaded
+        self._found: list[Diagnostic] = []
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything found so far."""
+        return tuple(self._found)
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether anything found so far stops the compiler."""
+        return any(found.severity is Severity.ERROR for found in self._found)
+
+    def error(self, code: str, path: Path, message: str, remedy: str, *, key: bool = False) -> None:
+        """Add an error at the value of `path`, or at its key."""
+        self._found.append(self._loaded.error(code, path, message, remedy, key=key))
+
+    def warning(
+        self, code: str, path: Path, message: str, remedy: str, *, key: bool = False
+    ) -> None:
+        """Add a warning, placed like an error."""
+        self._found.append(self._loaded.warning(code, path, message, remedy, key=key))
+
+    def fault(self, path: Path, fault: Fault) -> None:
+        """Add a fault in the text at `path`, under the very characters."""
+        within = (fault.start, fault.end)
+        found = self._loaded.error(fault.code, path, fault.message, fault.help, within=within)
+        self._found.append(found)

@@ -1,0 +1,194 @@
+"""Pass 6: sheets become tables, tables become the field of a program, and its error is measured."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeAlias, final
+
+import numpy as np
+
+from compiler.declare import Declarations
+from compiler.findings import Findings
+from compiler.lower_parts import code_of
+from compiler.plan import Plan, Sheet
+from compiler.quantities import per_second, si_value
+from compiler.sketched import range_of
+from compiler.tabulate import MARGIN, TableError, Tabulated, Wanted, tabulate_function
+from runtime.arrays import Array
+from runtime.flow import Source, flow_of, next_states, rates
+from runtime.program import Control, ErrorBound, Field, Kind, Method, Program, State, Table, Term
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.expressions.tree import Expr
+from spec_schema.field_forms import Step
+
+Progress: TypeAlias = Callable[[str, int, int], None]
+
+MOST_AXES = 5
+RELATIVE = {  # of the largest rate, where the spec declares no tolerance
+    ("formula", Method.CUBIC): 1e-6,
+    ("step", Method.CUBIC): 1e-6,
+    ("module", Method.CUBIC): 1e-5,
+    ("grid", Method.CUBIC): 1e-5,
+    ("arrows", Method.CUBIC): 1e-3,  # a sketch is not known better than that
+}
+RELATIVE_LINEAR = 1e-3
+SURVEY = 4_096  # points that tell how large a column is
+SPOTS = 40_000  # points that measure the whole field against its formula
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How the tables shall be: tolerances (m,) of the driven states' rates, in SI."""
+
+    method: Method
+    tolerance: tuple[float | None, ...]
+    fixed: Mapping[str, int]
+    budget: int
+
+
+def settings_of(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Settings:
+    """The `table:` block in SI."""
+    is_map = isinstance(spec.field.form, Step)
+    found: list[float | None] = []
+    for state in declared.driven:
+        unit = declared.units.get(state.name)
+        given = spec.table.tolerance.get(state.name)
+        path = ("table", "tolerance", state.name)
+        value = None
+        if given is not None and unit is not None:
+            wanted = unit if is_map else per_second(unit)
+            value = si_value(given, wanted, path, findings)
+        if value is not None and value <= 0.0:
+            findings.error(
+                "S212",
+                path,
+                f"a tolerance must be positive (got {given})",
+                "write how far the table may be off",
+            )
+        found.append(value)
+    method = Method(spec.table.method)
+    return Settings(method, tuple(found), spec.table.nodes, spec.table.budget)
+
+
+def lower_field(
+    plan: Plan, settings: Settings, form: str, declared: Declarations, progress: Progress
+) -> tuple[tuple[Table, ...], tuple[Term, ...], tuple[ErrorBound, ...]]:
+    """The tables and terms of a field, and how far each driven state's rate may be off.
+
+    Raises:
+        TableError: a sheet can't be tabulated within tolerance and budget.
+    """
+    tolerance = _tolerances(plan, settings, form, declared)
+    tables: list[Table] = []
+    terms = [Term(use.component, use.coefficient, -1, 0) for use in plan.alone]
+    error = np.zeros(len(declared.driven))
+    points = 0
+    for i, sheet in enumerate(plan.sheets):
+        progress(f"table over {', '.join(sheet.over)}", i, len(plan.sheets))
+        made = _tabulated(sheet, plan, settings, tolerance, declared)
+        for use in sheet.uses:
+            terms.append(Term(use.component, use.coefficient, len(tables), use.column))
+            error[use.component] += use.largest * made.error[use.column]
+        tables.append(made.table)
+        points += made.points
+    progress("measured", len(plan.sheets), len(plan.sheets))
+    bounds = tuple(
+        ErrorBound(float(e), float(t), points) for e, t in zip(error, tolerance, strict=True)
+    )
+    return (
+        tuple(tables),
+        tuple(sorted(terms, key=lambda t: (t.component, t.table, t.column))),
+        bounds,
+    )
+
+
+def formula_codes(rates_of: Mapping[str, Expr], field: Field) -> Field:
+    """The field with its own expressions beside the tables."""
+    return replace(field, formula=tuple(code_of(rates_of[name]) for name in field.driven))
+
+
+def measured(program: Program) -> Program:
+    """The program with its bounds measured as a whole, tables against formula, on fresh points.
+
+    The sum of the sheets' errors stays where it is smaller: both are estimates of the same.
+    """
+    if program.field.formula is None or not program.field.terms:
+        return program
+    points = _points(program, np.random.default_rng(SPOTS))
+    x, u = points[:, : len(program.states)], points[:, len(program.states) :]
+    run = next_states if program.field.is_map else rates
+    difference = np.abs(
+        run(flow_of(program, Source.TABLES), x, u) - run(flow_of(program, Source.FORMULA), x, u)
+    )[:, list(program.driven)]
+    largest = MARGIN * np.nanmax(difference, axis=0)
+    bounds = tuple(
+        replace(b, measured=float(max(e, b.measured)), points=b.points + len(points))
+        for b, e in zip(program.field.bounds, largest, strict=True)
+    )
+    return replace(program, field=replace(program.field, bounds=bounds))
+
+
+def _points(program: Program, rng: np.random.Generator) -> Array:
+    parts: tuple[State | Control, ...] = (*program.states, *program.controls)
+    low, high = [p.low for p in parts], [p.high for p in parts]
+    points = rng.uniform(low, high, (SPOTS, len(parts)))
+    for i, part in enumerate(program.states):
+        if part.kind is Kind.DISCRETE:
+            points[:, i] = np.floor(rng.uniform(0.0, len(part.values), SPOTS))
+    return points
+
+
+def _tolerances(plan: Plan, settings: Settings, form: str, declared: Declarations) -> Array:
+    """Absolute tolerances (m,) of the rates: declared, or relative to the largest rate."""
+    share = RELATIVE.get((form, settings.method), RELATIVE_LINEAR)
+    rng = np.random.default_rng(SURVEY)
+    size = np.zeros(len(declared.driven))
+    for use in plan.alone:
+        size[use.component] += use.largest
+    for sheet in plan.sheets:
+        ranges = [range_of(name, declared) for name in sheet.over]
+        places = rng.uniform(
+            [r.low for r in ranges], [r.high for r in ranges], (SURVEY, len(ranges))
+        )
+        values = np.abs(sheet.sample(places))
+        largest = np.nanmax(np.where(np.isfinite(values), values, 0.0), axis=0)
+        for use in sheet.uses:
+            finite = use.largest if np.isfinite(use.largest) else 1.0
+            size[use.component] += finite * largest[use.column]
+    chosen = np.where(size > 0.0, share * size, 1e-12)
+    given = settings.tolerance
+    return np.array([c if g is None else g for c, g in zip(chosen, given, strict=True)])
+
+
+def _tabulated(
+    sheet: Sheet, plan: Plan, settings: Settings, tolerance: Array, declared: Declarations
+) -> Tabulated:
+    if sheet.table is not None:
+        return Tabulated(sheet.table, np.zeros(sheet.columns), 0)
+    if len(sheet.over) > MOST_AXES:
+        raise TableError(
+            "S245",
+            sheet.over[-1],
+            f"the field has a part over {len(sheet.over)} variables ({', '.join(sheet.over)}), and "
+            f"a table has at most {MOST_AXES} axes",
+            "split it into factors of which each reads fewer (`gain * f(x)` keeps `gain` out of the "
+            "table), make a control a constant, or keep a formula as code: `table: {keep: code}`",
+        )
+    ranges = tuple(range_of(n, declared, settings.fixed.get(n)) for n in sheet.over)
+    budget = settings.budget // max(1, len(plan.sheets))
+    shares = _column_tolerance(sheet, plan, tolerance)
+    return tabulate_function(Wanted(sheet.sample, ranges, shares, settings.method, budget))
+
+
+def _column_tolerance(sheet: Sheet, plan: Plan, tolerance: Array) -> Array:
+    """What each column may be off, so that all uses of all sheets together stay within."""
+    users = np.zeros(len(tolerance))
+    for other in plan.sheets:
+        for component in {use.component for use in other.uses}:
+            users[component] += sum(use.component == component for use in other.uses)
+    allowed = np.full(sheet.columns, np.inf)
+    for use in sheet.uses:
+        largest = use.largest if np.isfinite(use.largest) and use.largest > 0.0 else 1.0
+        share = tolerance[use.component] / (users[use.component] * largest)
+        allowed[use.column] = min(allowed[use.column], share)
+    return allowed

@@ -1,0 +1,220 @@
+"""Pass 4: what the spec says beside the field, in the program's terms: SI numbers and code."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import replace
+
+from compiler.declare import Declarations, program_unit
+from compiler.findings import Findings
+from compiler.quantities import SECOND, si_limit, si_value, unit_of
+from compiler.read_expressions import Expressions
+from runtime.code import Code
+from runtime.program import (
+    Binding,
+    Feasibility,
+    Fidelity,
+    Origin,
+    Output,
+    Realization,
+    State,
+    Unit,
+)
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.dimension import describe
+from spec_schema.expressions.printers.postfix import to_postfix
+from spec_schema.expressions.tree import Expr
+from spec_schema.load import Loaded
+from spec_schema.places import Path
+from spec_schema.trace_mapping import TraceEntry
+from spec_schema.units import Unit as SpecUnit
+from spec_schema.units import parse_unit
+
+
+def code_of(expr: Expr) -> Code:
+    """The expression as the machine runs it."""
+    return Code(to_postfix(expr))
+
+
+def lower_states(declared: Declarations, closures: Mapping[str, Expr]) -> tuple[State, ...]:
+    """The states with their closures."""
+    return tuple(
+        replace(state, closure=code_of(closures[state.name])) if state.name in closures else state
+        for state in declared.states
+    )
+
+
+def lower_outputs(
+    spec: BehaviorSpec, expressions: Expressions, loaded: Loaded
+) -> tuple[Output, ...]:
+    """The output parameters."""
+    return tuple(
+        Output(
+            name=name,
+            unit=program_unit(parse_unit(spec.output[name].unit)),
+            code=code_of(expr),
+            about=spec.output[name].about or "",
+            origin=loaded.origin(("output", name)),
+        )
+        for name, expr in expressions.outputs.items()
+    )
+
+
+def lower_fidelity(
+    spec: BehaviorSpec, declared: Declarations, loaded: Loaded, findings: Findings
+) -> Fidelity | None:
+    """Tolerances, horizon and region in SI."""
+    if spec.fidelity is None:
+        return None
+    base: Path = ("fidelity",)
+    tolerance = {
+        name: _positive(value, declared.units.get(name), (*base, "tolerance", name), findings)
+        for name, value in spec.fidelity.tolerance.items()
+    }
+    horizon = _positive(spec.fidelity.horizon, SECOND, (*base, "horizon"), findings)
+    region = {}
+    for name, limits in spec.fidelity.region.items():
+        path = (*base, "region", name)
+        pair = [
+            si_limit(v, declared.units.get(name), (*path, i), findings)
+            for i, v in enumerate(limits)
+        ]
+        if pair[0] is not None and pair[1] is not None:
+            region[name] = _part_of_domain(name, (pair[0], pair[1]), declared, path, findings)
+    coverage = spec.fidelity.coverage
+    return Fidelity(tolerance, horizon, region, coverage, loaded.origin(base))
+
+
+def _positive(value: float | str, unit: SpecUnit | None, path: Path, findings: Findings) -> float:
+    found = si_value(value, unit, path, findings)
+    if found is not None and found <= 0.0:
+        findings.error("S212", path, f"{path[-1]} must be positive (got {value})", "write how much")
+    return found or 1.0
+
+
+def _part_of_domain(
+    name: str, limits: tuple[float, float], declared: Declarations, path: Path, findings: Findings
+) -> tuple[float, float]:
+    low, high = limits
+    part = declared.variable(name)
+    slack = 1e-9 * (part.high - part.low)
+    if not low < high:
+        findings.error("S202", path, f"the region of '{name}' has no width", "write [low, high]")
+    elif low < part.low - slack or high > part.high + slack:
+        shown = f"[{part.low / part.unit.scale:g}, {part.high / part.unit.scale:g}]"
+        message = f"the region of '{name}' reaches beyond its domain {shown}"
+        findings.error(
+            "S203",
+            path,
+            message,
+            "the field is not known there: widen the domain or shrink the region",
+        )
+    return low, high
+
+
+def lower_bindings(
+    spec: BehaviorSpec, declared: Declarations, loaded: Loaded, findings: Findings
+) -> tuple[Binding, ...]:
+    """Where each variable and each signal stands in a log."""
+    skipped = {*spec.output, *spec.constants}
+    return tuple(
+        _binding(name, entry, declared, loaded, findings)
+        for name, entry in spec.trace.items()
+        if name not in skipped
+    )
+
+
+def _binding(
+    name: str, entry: TraceEntry, declared: Declarations, loaded: Loaded, findings: Findings
+) -> Binding:
+    path: Path = ("trace", name)
+    own = declared.units.get(name)
+    constant = None
+    if entry.constant is not None:
+        constant = _constant(name, entry.constant, declared, (*path, "constant"), findings)
+    return Binding(
+        name=name,
+        path=entry.path or "",
+        unit=_logged_unit(name, entry, own, findings),
+        delay=si_value(entry.delay, SECOND, (*path, "delay"), findings) or 0.0,
+        scale=entry.scale,
+        offset=_offset(entry, own, (*path, "offset"), findings),
+        constant=constant,
+        values=_values(name, entry, declared),
+        origin=loaded.origin(path),
+    )
+
+
+def _constant(
+    name: str, value: float | str, declared: Declarations, path: Path, findings: Findings
+) -> float | None:
+    values = declared.values.get(name)
+    if values is None:
+        return si_value(value, declared.units.get(name), path, findings)
+    if value in values:
+        return float(values.index(str(value)))
+    findings.error(
+        "S210", path, f"'{name}' has no value '{value}'", f"its values: {', '.join(values)}"
+    )
+    return None
+
+
+def _offset(entry: TraceEntry, own: SpecUnit | None, path: Path, findings: Findings) -> float:
+    if entry.offset == 0.0 or own is None:
+        return 0.0
+    return si_value(entry.offset, own, path, findings) or 0.0
+
+
+def _logged_unit(name: str, entry: TraceEntry, own: SpecUnit | None, findings: Findings) -> Unit:
+    """The unit of the logged number: as given, else SI in messages, else the variable's own.
+
+    Messages follow REP-103 (SI); the columns of a CSV file are the user's own.
+    """
+    given = unit_of(entry.unit, ("trace", name, "unit"), findings)
+    if given is None:
+        if own is None:
+            return Unit("1", 1.0)
+        in_message = (entry.path or "").startswith("/")
+        return Unit(describe(own.dimension), 1.0) if in_message else program_unit(own)
+    if own is not None and given.dimension != own.dimension:
+        findings.error(
+            "S213",
+            ("trace", name, "unit"),
+            f"'{name}' is in {own.text}, and {given.text} can't be turned into it",
+            f"write a unit of the same kind as {own.text}",
+        )
+    return program_unit(given)
+
+
+def _values(name: str, entry: TraceEntry, declared: Declarations) -> tuple[str, ...]:
+    """The texts in the log, each at the index of the value that it means."""
+    if entry.values is None:
+        return declared.values.get(name, ())
+    meant = declared.values.get(name) or tuple(entry.values.values())
+    raw = {value: text for text, value in entry.values.items()}
+    return tuple(raw.get(value, value) for value in meant)
+
+
+def lower_judge_when(expressions: Expressions) -> Code | None:
+    """When the robot is judged."""
+    return None if expressions.judge_when is None else code_of(expressions.judge_when)
+
+
+def lower_realizes(spec: BehaviorSpec, loaded: Loaded) -> tuple[Realization, ...]:
+    """The channels that the driven states act on."""
+    return tuple(
+        Realization(name, channel.name, channel.mode, loaded.origin(("realizes", name)))
+        for name, channel in spec.realizes.items()
+    )
+
+
+def lower_feasibility(spec: BehaviorSpec) -> Feasibility | None:
+    """What is known of whether a robot can do this."""
+    if spec.feasibility is None:
+        return None
+    return Feasibility(spec.feasibility.level, spec.feasibility.evidence or "")
+
+
+def origin_of(loaded: Loaded) -> Origin:
+    """The spec's text, and the hash by which recordings know it."""
+    text = loaded.source.text
+    return Origin(loaded.source.name, text, hashlib.sha256(text.encode()).hexdigest())

@@ -1,0 +1,93 @@
+"""The user's own Python as a field: found beside the spec, called with arrays, its answer checked.
+
+This is the only place where code that a spec's author wrote is run, and only `compile` comes here.
+"""
+
+import importlib
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from compiler.tabulate import Sampler
+from runtime.arrays import Array
+
+
+class ModuleError(Exception):
+    """The user's function can't be found or didn't give a field: a sentence, and a remedy."""
+
+    def __init__(self, message: str, remedy: str) -> None:
+        self.message, self.remedy = message, remedy
+        super().__init__(message)
+
+
+def sampler(call: str, beside: Path, over: tuple[str, ...], driven: tuple[str, ...]) -> Sampler:
+    """The function `package.module:name` as a sampler: (N, d) in, (N, m) out, SI units.
+
+    The function takes each variable of `over` as a keyword, an array (N,), and returns a dict with
+    an array for each driven variable.
+    """
+    function = _found(call, beside)
+
+    def sample(points: Array) -> Array:
+        arguments = {name: points[:, i].copy() for i, name in enumerate(over)}
+        try:
+            answer = function(**arguments)
+        except Exception as error:
+            raise ModuleError(
+                f"{call} raised {type(error).__name__}: {error}",
+                f"it is called as {call.partition(':')[2]}({', '.join(over)}) with arrays",
+            ) from error
+        return _checked(call, answer, driven, len(points))
+
+    return sample
+
+
+def _found(call: str, beside: Path) -> Callable[..., object]:
+    module_name, _, name = call.partition(":")
+    if not module_name or not name:
+        raise ModuleError(f"'{call}' is not package.module:function", "write `call: spiral:field`")
+    with _importable(beside):
+        try:
+            module = importlib.import_module(module_name)
+        except Exception as error:
+            raise ModuleError(
+                f"{module_name} can't be imported: {type(error).__name__}: {error}",
+                f"it is looked for in {beside} and among the installed packages",
+            ) from error
+    function: Callable[..., object] | None = getattr(module, name, None)
+    if not callable(function):
+        raise ModuleError(
+            f"{module_name} has no function {name}", f"define `def {name}(...)` there"
+        )
+    return function
+
+
+@contextmanager
+def _importable(folder: Path) -> Iterator[None]:
+    before = list(sys.path)
+    sys.path.insert(0, str(folder))
+    importlib.invalidate_caches()
+    try:
+        yield
+    finally:
+        sys.path[:] = before
+
+
+def _checked(call: str, answer: object, driven: tuple[str, ...], count: int) -> Array:
+    if not isinstance(answer, Mapping) or set(answer) != set(driven):
+        got = ", ".join(map(str, answer)) if isinstance(answer, Mapping) else type(answer).__name__
+        raise ModuleError(
+            f"{call} must return a dict with a rate for each of {', '.join(driven)} (got {got})",
+            "return {" + ", ".join(f'"{name}": ...' for name in driven) + "}",
+        )
+    try:
+        columns = [np.broadcast_to(np.asarray(answer[n], dtype=float), (count,)) for n in driven]
+    except (TypeError, ValueError) as error:
+        raise ModuleError(
+            f"{call} returned something that is not an array of {count} numbers: {error}",
+            "return arrays of the same length as the arguments, or single numbers",
+        ) from error
+    return np.stack(columns, axis=-1)

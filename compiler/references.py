@@ -1,0 +1,171 @@
+"""Pass 3: everything that refers to a declared name by its name, and what nobody refers to."""
+
+from collections.abc import Iterable
+
+from compiler.declare import Declarations
+from compiler.findings import Findings
+from compiler.read_expressions import Expressions, signals
+from runtime.program import Role
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.expressions.rewrite import names_in
+from spec_schema.field_forms import Arrows, Form, Grid, Module
+from spec_schema.places import Path
+from spec_schema.suggest import did_you_mean
+
+
+def check_references(
+    spec: BehaviorSpec, declared: Declarations, expressions: Expressions, findings: Findings
+) -> None:
+    """A finding for each name that means nothing where it stands, and for each left unused."""
+    _check_axes(spec.field.form, declared, findings)
+    _check_keys(spec, declared, findings)
+    _check_trace(spec, declared, findings)
+    read = _read_by_field(spec.field.form, declared, expressions)
+    _warn_of_imitation(read, declared, findings)
+    _warn_of_unused(spec, expressions, read, findings)
+
+
+def axes_of(form: Form, declared: Declarations) -> tuple[str, ...]:
+    """The variables that a sketched, gridded or programmed field stands over."""
+    match form:
+        case Arrows() | Grid():
+            return form.over
+        case Module():
+            readable = [s.name for s in declared.states if s.role is not Role.DRIVEN]
+            return form.over or (*readable, *(c.name for c in declared.controls))
+        case _:
+            return ()
+
+
+def drives_of(form: Form, declared: Declarations) -> tuple[str, ...]:
+    """The driven states in the order in which a sketched or gridded field gives their rates."""
+    named = form.drives if isinstance(form, Arrows | Grid) else None
+    return named or tuple(state.name for state in declared.driven)
+
+
+def _check_axes(form: Form, declared: Declarations, findings: Findings) -> None:
+    if not isinstance(form, Arrows | Grid | Module):
+        return
+    base: Path = ("field", type(form).__name__.lower())
+    readable = [s.name for s in declared.states if s.role is not Role.DRIVEN]
+    known = [*readable, *(c.name for c in declared.controls)]
+    for i, name in enumerate(form.over or ()):
+        if name not in known:
+            remedy = did_you_mean(name, known) or f"it may stand over {', '.join(known)}"
+            message = (
+                f"the field can't stand over '{name}': no sensed state or control has this name"
+            )
+            findings.error("S207", (*base, "over", i), message, remedy)
+        elif name in declared.values:
+            message = f"'{name}' is discrete, and nothing lies between its values"
+            findings.error("S207", (*base, "over", i), message, "leave it out of `over`")
+    driven = [state.name for state in declared.driven]
+    drives = drives_of(form, declared)
+    for i, name in enumerate(drives):
+        if name not in driven:
+            remedy = did_you_mean(name, driven) or f"the driven states: {', '.join(driven)}"
+            findings.error("S205", (*base, "drives", i), f"'{name}' is no driven state", remedy)
+    missing = [name for name in driven if name not in drives]
+    if missing:
+        message = f"the field gives no rate for '{missing[0]}'"
+        findings.error("S204", (*base,), message, "add it to `drives`", key=True)
+
+
+def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> None:
+    driven = [state.name for state in declared.driven]
+    readable = [*declared.continuous, *(c.name for c in declared.controls)]
+    sections: list[tuple[Path, Iterable[str], list[str], str]] = [
+        (("table", "tolerance"), spec.table.tolerance, driven, "driven state"),
+        (("table", "nodes"), spec.table.nodes, readable, "state or control"),
+        (("realizes",), spec.realizes, driven, "driven state"),
+    ]
+    if spec.fidelity is not None:
+        sections += [
+            (("fidelity", "tolerance"), spec.fidelity.tolerance, driven, "driven state"),
+            (("fidelity", "region"), spec.fidelity.region, readable, "state or control"),
+        ]
+    for path, names, known, what in sections:
+        for name in names:
+            if name not in known:
+                remedy = (
+                    did_you_mean(name, sorted(known)) or f"there are {', '.join(sorted(known))}"
+                )
+                findings.error("S208", (*path, name), f"'{name}' is no {what}", remedy, key=True)
+
+
+def _check_trace(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> None:
+    for name in spec.output:
+        if name in spec.trace:
+            message = (
+                f"'{name}' is an output: it follows from the states, and no log is read for it"
+            )
+            findings.error("S209", ("trace", name), message, "remove it", key=True)
+    for name in spec.constants:
+        if name in spec.trace:
+            message = f"'{name}' is a constant of the spec, and no log is read for it"
+            findings.error(
+                "S209",
+                ("trace", name),
+                message,
+                "remove it, or declare it under `control`",
+                key=True,
+            )
+    for name, values in declared.values.items():
+        entry = spec.trace.get(name)
+        for raw, meant in (entry.values or {}).items() if entry else ():
+            if meant not in values:
+                remedy = did_you_mean(meant, list(values)) or f"its values: {', '.join(values)}"
+                path = ("trace", name, "values", raw)
+                findings.error("S210", path, f"'{name}' has no value '{meant}'", remedy)
+    unread = set(signals(spec)) - _names_in_text(spec.judge_when)
+    for name in signals(spec):
+        if name in unread:
+            known = declared.register
+            remedy = did_you_mean(name, list(known)) or "read it in `judge_when`, or remove it"
+            message = f"'{name}' is declared nowhere and `judge_when` does not read it"
+            findings.warning("S221", ("trace", name), message, remedy, key=True)
+
+
+def _names_in_text(text: str | None) -> set[str]:
+    if text is None:
+        return set()
+    words = "".join(c if c.isalnum() or c == "_" else " " for c in text).split()
+    return set(words)
+
+
+def _read_by_field(form: Form, declared: Declarations, expressions: Expressions) -> frozenset[str]:
+    read = frozenset(name for e in expressions.rates.values() for name in names_in(e))
+    return read | frozenset(axes_of(form, declared))
+
+
+def _warn_of_imitation(read: frozenset[str], declared: Declarations, findings: Findings) -> None:
+    sensed = {state.name for state in declared.states if state.role is not Role.DRIVEN}
+    if read and not read & sensed:
+        findings.warning(
+            "S222",
+            ("field",),
+            "the field reads nothing that is sensed: an imitation, not a behavior "
+            "(thesis, section 2.3, caveat 1)",
+            "let it depend on a state whose role is `sensed` or `both`",
+            key=True,
+        )
+
+
+def _warn_of_unused(
+    spec: BehaviorSpec, expressions: Expressions, read: frozenset[str], findings: Findings
+) -> None:
+    if findings.has_errors:
+        return  # what could not be read may well be what uses them
+    trees = [*expressions.closures.values(), *expressions.outputs.values()]
+    if expressions.judge_when is not None:
+        trees.append(expressions.judge_when)
+    used = read.union(*map(names_in, trees))
+    sections: tuple[tuple[str, Iterable[str]], ...] = (
+        ("control", spec.control),
+        ("constants", spec.constants),
+    )
+    for section, names in sections:
+        for name in names:
+            if name not in used:
+                message = f"nothing reads '{name}'"
+                findings.warning("S223", (section, name), message, "use it or remove it", key=True)

@@ -1,0 +1,243 @@
+"""The samplers of fields that are given by numbers: arrows at points, and arrays on grids."""
+
+import math
+from pathlib import Path as FilePath
+
+import numpy as np
+
+from compiler.declare import Declarations
+from compiler.findings import Findings
+from compiler.lattice import between_nodes, is_even
+from compiler.scattered import SketchError, piecewise_linear, reaches_beyond, thin_plate
+from compiler.tabulate import Range, Sampler
+from runtime.arrays import Array, frozen
+from runtime.interpolation import lookup, tabulate
+from runtime.program import Axis, Kind, Method, State, Table
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.field_forms import Arrows, Grid
+
+
+def range_of(name: str, declared: Declarations, fixed: int | None = None) -> Range:
+    """The axis of a table over the variable."""
+    part = declared.variable(name)
+    periodic = isinstance(part, State) and part.kind is Kind.PERIODIC
+    return Range(name, part.low, part.high, periodic, fixed)
+
+
+def arrows_sampler(
+    form: Arrows, declared: Declarations, drives: tuple[str, ...], findings: Findings
+) -> Sampler | None:
+    """The field through the arrows, with a warning where the sketch does not reach."""
+    if not _sizes_fit(form, drives, findings):
+        return None
+    at = frozen([arrow.at for arrow in form.sketch]) * _scales(form.over, declared)
+    go = frozen([arrow.go for arrow in form.sketch]) * _scales(drives, declared)
+    ranges = [range_of(name, declared) for name in form.over]
+    low, high = frozen([r.low for r in ranges]), frozen([r.high for r in ranges])
+    outside = np.any((at < low) | (at > high), axis=1)
+    if outside.any():
+        index = int(np.argmax(outside))
+        message = "this arrow starts outside the domain"
+        findings.error(
+            "S234",
+            ("field", "arrows", "sketch", index, "at"),
+            message,
+            "move it inside, or widen the domain",
+        )
+        return None
+    at, go = _wrapped(at, go, ranges)
+    try:
+        sample = (
+            thin_plate(at, go, low, high) if form.fill == "thin_plate" else piecewise_linear(at, go)
+        )
+        beyond = reaches_beyond(at, low, high)
+    except SketchError as error:
+        findings.error("S234", ("field", "arrows", "sketch"), error.message, error.remedy)
+        return None
+    if beyond is not None:
+        findings.warning(
+            "S224",
+            ("field", "arrows", "sketch"),
+            f"the domain of '{form.over[beyond]}' reaches beyond the hull of the sketch, where the "
+            "field is a guess",
+            "sketch arrows at the corners of the domain, or shrink the domain",
+        )
+    return sample
+
+
+def grid_sampler(
+    form: Grid,
+    spec: BehaviorSpec,
+    declared: Declarations,
+    drives: tuple[str, ...],
+    beside: FilePath,
+    findings: Findings,
+) -> tuple[Sampler | None, Table | None]:
+    """The field of a lookup array; its own table, too, where its nodes are those of a table."""
+    given = _grid_values(form, drives, beside, findings)
+    if given is None:
+        return None, None
+    values = given * _scales(drives, declared)
+    ranges = [range_of(name, declared) for name in form.over]
+    nodes = _grid_nodes(form, values.shape, ranges, declared, findings)
+    if nodes is None:
+        return None, None
+    method = Method(form.between)
+    even = all(
+        is_even(at, r.low, r.high, periodic=r.periodic) for at, r in zip(nodes, ranges, strict=True)
+    )
+    if even and not spec.table.nodes:
+        axes = tuple(
+            Axis(r.name, r.low, r.high, len(at), r.periodic)
+            for at, r in zip(nodes, ranges, strict=True)
+        )
+        table = tabulate(values, axes, method)
+        return (lambda points: lookup(table, points)), table
+    return between_nodes(nodes, values, method), None
+
+
+def _scales(names: tuple[str, ...], declared: Declarations) -> Array:
+    return frozen([declared.variable(name).unit.scale for name in names])
+
+
+def _sizes_fit(form: Arrows, drives: tuple[str, ...], findings: Findings) -> bool:
+    fits = True
+    for i, arrow in enumerate(form.sketch):
+        if len(arrow.go) != len(drives) or len(arrow.at) != len(form.over):
+            fits = False
+            if form.drives is None and len(arrow.go) != len(drives):
+                message = f"'go' has {len(arrow.go)} numbers for {len(drives)} driven states"
+                remedy = f"write one for each of {', '.join(drives)}"
+                findings.error("S234", ("field", "arrows", "sketch", i, "go"), message, remedy)
+    return fits
+
+
+def _wrapped(at: Array, go: Array, ranges: list[Range]) -> tuple[Array, Array]:
+    """The sketch with a copy on either side of every periodic axis, so that its ends meet."""
+    for i, span in enumerate(ranges):
+        if span.periodic:
+            turn = np.zeros(len(ranges))
+            turn[i] = span.high - span.low
+            at = np.concatenate([at - turn, at, at + turn])
+            go = np.concatenate([go, go, go])
+            at, kept = np.unique(at, axis=0, return_index=True)
+            go = go[kept]
+    return at, go
+
+
+def _grid_values(
+    form: Grid, drives: tuple[str, ...], beside: FilePath, findings: Findings
+) -> Array | None:
+    """The array (n1, ..., nd, m) in the user's units."""
+    base = ("field", "grid")
+    if form.values is not None:
+        unlike = [name for name in form.values if name not in drives]
+        missing = [name for name in drives if name not in form.values]
+        for name in unlike:
+            findings.error(
+                "S205",
+                (*base, "values", name),
+                f"'{name}' is no driven state",
+                f"the driven states: {', '.join(drives)}",
+                key=True,
+            )
+        if missing:
+            findings.error(
+                "S204",
+                (*base, "values"),
+                f"the grid gives no rate for '{missing[0]}'",
+                f"add `{missing[0]}: [...]`",
+                key=True,
+            )
+        if unlike or missing:
+            return None
+        given = [form.values[name] for name in drives]
+        return np.stack([frozen(g.numbers).reshape(g.shape) for g in given], axis=-1)
+    path = beside / str(form.file)
+    try:
+        data = _read_npy(path) if path.suffix == ".npy" else _read_csv(path, form, drives)
+    except (OSError, ValueError) as error:
+        message = f"{form.file} can't be used: {error}"
+        remedy = f"an array with an axis for each of {', '.join(form.over)} and a last one for {', '.join(drives)}"
+        findings.error("S232", (*base, "file"), message, remedy)
+        return None
+    if data.ndim != len(form.over) + 1 or data.shape[-1] != len(drives):
+        shape = " x ".join(map(str, data.shape))
+        message = (
+            f"{form.file} is {shape}; it must have {len(form.over)} axes and {len(drives)} columns"
+        )
+        findings.error(
+            "S231",
+            (*base, "file"),
+            message,
+            f"axes: {', '.join(form.over)}; columns: {', '.join(drives)}",
+        )
+        return None
+    return data
+
+
+def _read_npy(path: FilePath) -> Array:
+    data = np.load(path, allow_pickle=False)
+    if not np.issubdtype(data.dtype, np.number) or np.iscomplexobj(data):
+        raise ValueError(f"it holds {data.dtype}, not numbers")
+    array = np.asarray(data, dtype=np.float64)
+    if not np.isfinite(array).all():
+        raise ValueError("it holds NaN or infinity")
+    return array
+
+
+def _read_csv(path: FilePath, form: Grid, drives: tuple[str, ...]) -> Array:
+    """A table with a column for each variable of `over`, then one for each driven state."""
+    with path.open(encoding="utf-8") as file:
+        header = [name.strip() for name in file.readline().split(",")]
+        rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    wanted = [*form.over, *drives]
+    if header != wanted:
+        raise ValueError(f"its header must be {','.join(wanted)} (got {','.join(header)})")
+    shape = tuple(len(np.unique(rows[:, i])) for i in range(len(form.over)))
+    if math.prod(shape) != len(rows):
+        raise ValueError(f"{len(rows)} rows don't fill a grid of {' x '.join(map(str, shape))}")
+    order = np.lexsort(rows[:, : len(form.over)].T[::-1])
+    values: Array = rows[order][:, len(form.over) :].reshape(*shape, len(drives))
+    return values
+
+
+def _grid_nodes(
+    form: Grid,
+    shape: tuple[int, ...],
+    ranges: list[Range],
+    declared: Declarations,
+    findings: Findings,
+) -> tuple[Array, ...] | None:
+    """The nodes of each axis in SI; evenly over the domain where none are given."""
+    found = []
+    least = 4 if form.between == "cubic" else 2
+    for name, count, span in zip(form.over, shape, ranges, strict=False):
+        given = form.nodes.get(name)
+        if count < least:
+            message = f"'{name}' has {count} nodes, and {form.between} needs {least}"
+            findings.error(
+                "S231",
+                ("field", "grid"),
+                message,
+                "give more nodes, or write `between: linear`",
+                key=True,
+            )
+            return None
+        if given is None:
+            share = count if span.periodic else count - 1
+            found.append(span.low + (span.high - span.low) * np.arange(count) / share)
+            continue
+        at = frozen(given) * declared.variable(name).unit.scale
+        slack = 1e-9 * (span.high - span.low)
+        if len(at) != count or at[0] > span.low + slack or at[-1] < span.high - slack:
+            message = f"the nodes of '{name}' must reach from one end of its domain to the other"
+            findings.error(
+                "S231",
+                ("field", "grid", "nodes", name),
+                message,
+                "add nodes at the ends, or shrink the domain",
+            )
+            return None
+        found.append(at)
+    return tuple(found)

@@ -1,0 +1,27 @@
+"""The command line: parsing and printing only; the work is done in `specc.api`."""
+
+import sys
+import traceback
+from collections.abc import Sequence
+
+from specc.cli.status import Status
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run `specc` and return its exit status (see `specc.cli.status`)."""
+    from specc.cli.app import run
+
+    return run(arguments)
+
+
+def entry() -> None:
+    """What the installed `specc` command calls; the one place where an exception becomes a 3."""
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.stderr.write("\ninterrupted; nothing was left half-written\n")
+        sys.exit(130)
+    except Exception:  # noqa: BLE001  the last line of defence
+        traceback.print_exc()
+        sys.stderr.write("\nthis is a bug in specc, not in your spec or trace; please report it\n")
+        sys.exit(Status.BUG)

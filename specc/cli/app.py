@@ -1,0 +1,78 @@
+"""The commands, in the order in which a user meets them, and how a failure ends."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import click
+import typer
+
+import specc
+from spec_schema.diagnostics import SpecError
+from specc.cli.check import check
+from specc.cli.compile import compile_
+from specc.cli.console import say, show_diagnostics
+from specc.cli.init import init
+from specc.cli.portrait import portrait
+from specc.cli.schema import schema
+from specc.cli.simulate import simulate
+from specc.cli.status import Status
+from specc.cli.verify import verify
+
+EPILOG = (
+    "Exit status: 0 yes, 1 no (not faithful), 2 bad spec, trace or usage, "
+    "3 a bug in specc, 4 inconclusive."
+)
+
+app = typer.Typer(
+    name="specc",
+    help="Say precisely what a robot behavior shall do, and check whether the robot does it.",
+    epilog=EPILOG,
+    no_args_is_help=True,
+    add_completion=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="markdown",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:  # noqa: FBT001  typer calls it with the flag's value
+    if wanted:
+        typer.echo(f"specc {specc.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _specc(
+    _show_version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    pass
+
+
+app.command("init")(init)
+app.command("check")(check)
+app.command("compile")(compile_)
+app.command("simulate")(simulate)
+app.command("portrait")(portrait)
+app.command("verify")(verify)
+app.command("schema")(schema)
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Parse the arguments, run the command, and turn how it ended into an exit status."""
+    try:
+        outcome = app(args=arguments, standalone_mode=False)
+    except SpecError as error:
+        show_diagnostics(error.diagnostics)
+        return Status.BAD_INPUT
+    except click.exceptions.Abort:
+        raise KeyboardInterrupt from None
+    except click.ClickException as error:
+        error.show()
+        return Status.BAD_INPUT
+    except OSError as error:
+        say(f"{error.filename}: {error.strerror}" if error.filename else str(error), "bold red")
+        return Status.BAD_INPUT
+    return outcome if isinstance(outcome, int) else Status.YES

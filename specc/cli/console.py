@@ -1,0 +1,72 @@
+"""Where the program speaks: results to standard output, messages and progress to standard error."""
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from spec_schema.diagnostics import Diagnostic, in_file_order, render_one, summary
+
+COLOURS = {"error": "bold red", "warning": "bold yellow", "pass": "bold green", "fail": "bold red"}
+
+
+def messages() -> Console:
+    """Standard error, with colour where a terminal wants it (rich respects NO_COLOR)."""
+    return Console(stderr=True, highlight=False, soft_wrap=True)
+
+
+def results() -> Console:
+    """Standard output, likewise."""
+    return Console(highlight=False, soft_wrap=True)
+
+
+def say(message: str, style: str = "") -> None:
+    """A message for the user; never part of a result."""
+    messages().print(Text(message, style=style))
+
+
+def print_json(value: object) -> None:
+    """A result for machines, alone on standard output; never NaN, which isn't JSON."""
+    sys.stdout.write(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def print_text(text: str) -> None:
+    """A result for people."""
+    results().print(Text(text))
+
+
+def show_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
+    """Diagnostics in file order, with a last line that counts them, on standard error."""
+    found = in_file_order(diagnostics)
+    if not found:
+        return
+    console = messages()
+    for diagnostic in found:
+        console.print(_coloured(diagnostic))
+        console.print()
+    console.print(Text(summary(found), style="bold"))
+
+
+def _coloured(diagnostic: Diagnostic) -> Text:
+    text = Text(render_one(diagnostic))
+    text.highlight_regex(rf"{diagnostic.severity}\[\w+\]", COLOURS[diagnostic.severity])
+    text.highlight_regex(r"\^+", COLOURS[diagnostic.severity])
+    text.highlight_regex(r"= (at|help):", "cyan")
+    return text
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[[str, int, int], None]]:
+    """A bar on standard error; what it yields takes (what, done, of how many)."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=messages(), transient=True) as bar:
+        task = bar.add_task(title, total=None)
+
+        def advance(what: str, done: int, total: int) -> None:
+            bar.update(task, description=f"{title}: {what}", completed=done, total=total)
+
+        yield advance

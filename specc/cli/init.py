@@ -1,0 +1,53 @@
+"""`specc init`: a first spec, from a template or from a log."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from specc.cli.console import print_text, say
+
+
+def init(
+    name: Annotated[str, typer.Argument(help="The name of the new behavior.", metavar="NAME")] = "",
+    template: Annotated[
+        str, typer.Option("--template", "-t", help="Which template to begin with.")
+    ] = "van_der_pol",
+    listing: Annotated[bool, typer.Option("--list", help="List the templates.")] = False,
+    log: Annotated[
+        Path | None,
+        typer.Option(
+            "--from", help="List what a log holds and write a spec for it.", metavar="TRACE"
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Where it goes; default NAME.yaml here.")
+    ] = None,
+) -> None:
+    """Write a first spec: from a template, or from a log with its `trace:` filled in.
+
+    **Examples**
+
+    `specc init --list`
+
+    `specc init patrol --template wall_follow`
+
+    `specc init drive --from run.mcap`
+    """
+    from specc import beginnings
+    from specc.files import write_atomically
+
+    if listing:
+        print_text(beginnings.list_templates())
+        return
+    if log is not None:
+        inventory = beginnings.inventory(log)
+        print_text(beginnings.describe(inventory))
+        text = beginnings.spec_for(inventory, name or beginnings.name_for(log))
+    else:
+        text = beginnings.from_template(template, name or template)
+    path = output or Path(f"{name or (beginnings.name_for(log) if log else template)}.yaml")
+    if path.exists():
+        raise typer.BadParameter(f"{path} exists already; name another file with -o")
+    write_atomically(path, text.encode())
+    say(f"wrote {path}; next: specc check {path}", "bold")

@@ -1,0 +1,51 @@
+"""Options that several commands share."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, TypeAlias, final
+
+import typer
+
+
+@final
+class Format(StrEnum):
+    """How a result is printed on standard output."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+SpecPath: TypeAlias = Annotated[
+    Path, typer.Argument(help="A behavior spec (.yaml) or a compiled one (.specc).", metavar="SPEC")
+]
+FormatOption: TypeAlias = Annotated[
+    Format, typer.Option("--format", "-f", help="Print for people (text) or for programs (json).")
+]
+Settings: TypeAlias = Annotated[
+    list[str],
+    typer.Option(
+        "--set",
+        "-s",
+        metavar="NAME=VALUE",
+        help="Set a control parameter or hold a state: in its own unit (`speed=0.4`) or with one "
+        "(`speed='40 cm/s'`). Repeatable.",
+    ),
+]
+
+
+def assignments(settings: list[str]) -> dict[str, str]:
+    """`["x=1", "v=2 m/s"]` as a mapping.
+
+    Raises:
+        typer.BadParameter: an entry without `=`, or a name given twice.
+    """
+    found: dict[str, str] = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        name = name.strip()
+        if not equals or not name or not value.strip():
+            raise typer.BadParameter(f"write NAME=VALUE, for example mu=1.5 (got '{setting}')")
+        if name in found:
+            raise typer.BadParameter(f"'{name}' is set twice")
+        found[name] = value.strip()
+    return found

@@ -1,0 +1,106 @@
+"""Values that a user gives on the way: `x=1`, `speed="40 cm/s"`; in SI, inside their domains."""
+
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias
+
+from runtime.program import Control, Kind, Program, State
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.expressions.evaluate import evaluate
+from spec_schema.expressions.parse import parse
+from spec_schema.expressions.rewrite import names_in
+from spec_schema.faults import ExpressionError, UnitFault
+from spec_schema.source import Source
+from spec_schema.suggest import did_you_mean
+from spec_schema.units import Unit, parse_unit, quantity_in
+
+Value: TypeAlias = float | str
+Part: TypeAlias = State | Control
+
+
+def settings_for(parts: Sequence[Part], given: Mapping[str, Value], what: str) -> dict[str, float]:
+    """SI values of `given`, each of one of the `parts`.
+
+    Raises:
+        SpecError: with every name that is no `what`, and every value that can't be used.
+    """
+    known = {part.name: part for part in parts}
+    found: dict[str, float] = {}
+    problems: list[Diagnostic] = []
+    for name, value in given.items():
+        if name not in known:
+            remedy = did_you_mean(name, list(known)) or f"there are {', '.join(known) or 'none'}"
+            problems.append(_problem("V341", name, value, f"no {what} is named '{name}'", remedy))
+            continue
+        try:
+            found[name] = _inside(known[name], value)
+        except ValueError as error:
+            problems.append(_problem("V342", name, value, str(error), _example(known[name])))
+    if problems:
+        raise SpecError(problems)
+    return found
+
+
+def si_settings(program: Program, given: Mapping[str, Value]) -> dict[str, float]:
+    """SI values of states and controls.
+
+    Raises:
+        SpecError: as `settings_for`.
+    """
+    return settings_for((*program.states, *program.controls), given, "state or control")
+
+
+def seconds(value: Value) -> float:
+    """A duration: a number of seconds, or a quantity of time.
+
+    Raises:
+        SpecError: it is none, or not positive.
+    """
+    try:
+        found = _si(value, parse_unit("s"))
+    except ValueError as error:
+        problem = _problem("V342", "duration", value, str(error), "write 20, '20 s' or '2 min'")
+        raise SpecError([problem]) from error
+    if not 0.0 < found < float("inf"):
+        raise SpecError([_problem("V342", "duration", value, "it must be positive", "write 20 s")])
+    return found
+
+
+def _inside(part: Part, value: Value) -> float:
+    if isinstance(part, State) and part.kind is Kind.DISCRETE:
+        if value not in part.values:
+            raise ValueError(f"'{part.name}' has no value '{value}'")
+        return float(part.values.index(str(value)))
+    found = _si(value, parse_unit(part.unit.text))
+    periodic = isinstance(part, State) and part.kind is Kind.PERIODIC
+    if not periodic and not part.low <= found <= part.high:
+        low, high = part.low / part.unit.scale, part.high / part.unit.scale
+        raise ValueError(f"{value} is outside the domain [{low:g}, {high:g}] {part.unit.text}")
+    return found
+
+
+def _si(value: Value, unit: Unit) -> float:
+    if not isinstance(value, str):
+        return float(value) * unit.scale
+    try:
+        expr = parse(value)
+        if not names_in(expr):
+            return evaluate(expr, {}) * unit.scale
+    except ExpressionError:
+        pass
+    try:
+        return quantity_in(value, unit)
+    except UnitFault as error:
+        raise ValueError(error.fault.message) from error
+
+
+def _example(part: Part) -> str:
+    if isinstance(part, State) and part.kind is Kind.DISCRETE:
+        return f"its values: {', '.join(part.values)}"
+    return (
+        f"write a number in {part.unit.text}, such as {part.name}={part.high / part.unit.scale:g}"
+    )
+
+
+def _problem(code: str, name: str, value: Value, message: str, remedy: str) -> Diagnostic:
+    source = Source(f"{name}={value}", "")
+    return Diagnostic(code, Severity.ERROR, message, source, None, help=remedy)

@@ -1,0 +1,130 @@
+"""Results as text for people and as records for programs, in the user's units."""
+
+import hashlib
+import math
+from pathlib import Path
+
+from compiler.quantities import rate_text
+from compiler.tabulate import table_bytes
+from runtime.arrays import Array
+from runtime.program import Program, Table, Unit
+from runtime.rollout import Ending, Rollout
+from verifier.topology.features import FixedPoint, Portrait
+
+
+def compile_record(program: Program, path: Path, artifact: bytes) -> dict[str, object]:
+    """What `specc compile --format json` prints: a row for each table and rate that it serves.
+
+    Bounds and tolerances are of the whole rate, in the user's unit per second.
+    """
+    field = program.field
+    scale = {state.name: state.unit.scale for state in program.states}
+    rows: list[dict[str, object]] = []
+    for index, table in enumerate(field.tables):
+        served = sorted({t.component for t in field.terms if t.table == index})
+        for component in served:
+            bound, name = field.bounds[component], field.driven[component]
+            rows.append(
+                {
+                    "field": name,
+                    "axes": [axis.name for axis in table.axes],
+                    "shape": [axis.count for axis in table.axes],
+                    "method": str(table.method),
+                    "error_bound": bound.measured / scale[name],
+                    "tolerance": bound.tolerance / scale[name],
+                    "bytes": table.coefficients.nbytes,
+                }
+            )
+    digest = hashlib.sha256(artifact).hexdigest()
+    return {"artifact": str(path), "sha256": digest, "tables": rows}
+
+
+def compile_summary(program: Program) -> str:
+    """What the compiler chose, and how good it is."""
+    field = program.field
+    lines = [f"{program.name}: {field.form} field of {', '.join(field.driven)}"]
+    lines += [f"  table over {_table(table)}" for table in field.tables]
+    if not field.terms:
+        lines.append("  kept as code: no tables")
+    for name, bound in zip(field.driven, field.bounds, strict=False):
+        state = next(s for s in program.states if s.name == name)
+        unit = state.unit.text if field.is_map else rate_text(state.unit.text)
+        scale = state.unit.scale
+        lines.append(
+            f"  {name}: off by at most {bound.measured / scale:.2e} {unit} "
+            f"(allowed {bound.tolerance / scale:.2e}; measured on {bound.points:,} points)"
+        )
+    return "\n".join(lines)
+
+
+def _table(table: Table) -> str:
+    axes = " x ".join(f"{axis.name}[{axis.count}]" for axis in table.axes)
+    size = table_bytes(table.axes, table.method, table.coefficients.shape[-1])
+    return f"{axes}, {table.method}, {size:,} bytes"
+
+
+def rollout_record(program: Program, rollout: Rollout) -> dict[str, object]:
+    """A run as numbers, in the spec's own units; None after its end."""
+    return {
+        "behavior": program.name,
+        "times": rollout.times.tolist(),
+        "states": {
+            s.name: _column(rollout.states[:, i], s.unit) for i, s in enumerate(program.states)
+        },
+        "controls": {
+            c.name: float(rollout.controls[i]) / c.unit.scale
+            for i, c in enumerate(program.controls)
+        },
+        "outputs": {
+            o.name: _column(rollout.outputs[:, i], o.unit) for i, o in enumerate(program.outputs)
+        },
+        "ending": str(rollout.ending),
+        "ended_at": float(rollout.ended_at),
+        "detail": rollout.detail,
+    }
+
+
+def _column(values: Array, unit: Unit) -> list[float | None]:
+    return [v / unit.scale if math.isfinite(v) else None for v in values.tolist()]
+
+
+def rollout_summary(program: Program, rollout: Rollout) -> str:
+    """How a run began and ended."""
+    first, last = rollout.states[0], rollout.ended_in
+    rows = [f"{program.name}: {rollout.ending.sentence} after {float(rollout.ended_at):.6g} s"]
+    if rollout.ending is not Ending.COMPLETED:
+        rows.append(f"  {rollout.detail}")
+    rows.append(f"  {'':16} {'start':>14} {'end':>14}")
+    for i, state in enumerate(program.states):
+        start, end = first[i] / state.unit.scale, last[i] / state.unit.scale
+        rows.append(f"  {state.name:16} {start:14.6g} {end:14.6g}  {state.unit.text}")
+    return "\n".join(rows)
+
+
+def portrait_summary(portrait: Portrait) -> str:
+    """The fixed points of a portrait."""
+    axes = ", ".join(axis.name for axis in portrait.axes)
+    held = ", ".join(
+        f"{h.name} = {h.label or f'{h.value / h.unit.scale:g}'}" for h in portrait.held
+    )
+    rows = [f"{portrait.name} over {axes}" + (f", at {held}" if held else "")]
+    if not portrait.fixed_points:
+        rows.append("  no fixed points found")
+    rows += [f"  {_fixed_point(point, portrait)}" for point in portrait.fixed_points]
+    rows += [f"  {note}" for note in portrait.notes]
+    return "\n".join(rows)
+
+
+def _fixed_point(point: FixedPoint, portrait: Portrait) -> str:
+    place = ", ".join(
+        f"{axis.name} = {value / axis.unit.scale + 0.0:.6g}"
+        for axis, value in zip(portrait.axes, point.at.tolist(), strict=True)
+    )
+    values = ", ".join(_complex(value) for value in point.eigenvalues)
+    return f"{point.kind} at {place}; eigenvalues {values}"
+
+
+def _complex(value: complex) -> str:
+    if abs(value.imag) < 1e-12 * max(1.0, abs(value)):
+        return f"{value.real:.6g}"
+    return f"{value.real:.6g} {'+' if value.imag > 0 else '-'} {abs(value.imag):.6g}i"

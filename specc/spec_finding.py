@@ -1,0 +1,135 @@
+"""Which spec a trace is judged by: the one named, else the one attached, else the project's."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+from runtime.artifact import ArtifactError, from_bytes
+
+from runtime.program import Program
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.load import load
+from spec_schema.project import ProjectSpec
+from spec_schema.source import Source
+from verifier.traces.open_log import attached_program
+
+PROJECT = "specc.yaml"
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Found:
+    """The program that a trace is judged by, and how it was found, as a sentence."""
+
+    program: Program
+    how: str
+
+
+def find_spec(trace: Path, named: Path | None, program_of: Callable[[Path], Program]) -> Found:
+    """The spec for `trace`; `program_of` loads one from a path.
+
+    Raises:
+        SpecError: there is none, or the attached one is not the project's of the same name.
+    """
+    if named is not None:
+        return Found(program_of(named), f"{named}, as named by --spec")
+    attached = _attached(trace)
+    project = _project_of(trace)
+    if attached is not None:
+        name, program = attached
+        if project is not None:
+            _refuse_other_text(trace, program, project)
+        return Found(program, f"{name}, attached to the trace (spec text sha256 {_short(program)})")
+    if project is None:
+        raise _fault(
+            "V331",
+            trace,
+            f"no spec is attached to the trace, and no {PROJECT} is in this folder or above it",
+            f"name one with --spec, or write a {PROJECT} with `specs: [NAME.yaml]`",
+        )
+    path, why = _spec_of(project, trace)
+    return Found(program_of(path), f"{path}, {why} {project.path}")
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Project:
+    path: Path
+    spec: ProjectSpec
+
+
+def _attached(trace: Path) -> tuple[str, Program] | None:
+    found = attached_program(trace)
+    if found is None:
+        return None
+    name, data = found
+    try:
+        return name, from_bytes(data)
+    except ArtifactError as error:
+        message = f"the attached {name} can't be used: {error}"
+        raise _fault("V332", trace, message, "name a spec with --spec") from error
+
+
+def _project_of(trace: Path) -> _Project | None:
+    """The nearest project file above the working directory, else above the trace."""
+    for start in (Path.cwd(), trace.resolve().parent):
+        for folder in (start, *start.parents):
+            path = folder / PROJECT
+            if path.is_file():
+                spec = load(_shown(path)).spec
+                if isinstance(spec, ProjectSpec):
+                    return _Project(_shown(path), spec)
+    return None
+
+
+def _shown(path: Path) -> Path:
+    """The path as the user would write it from here."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path
+
+
+def _refuse_other_text(trace: Path, program: Program, project: _Project) -> None:
+    """The attached spec and the project's of the same name must be the same text."""
+    for entry in dict.fromkeys((*project.spec.specs, *project.spec.traces.values())):
+        path = project.path.parent / entry
+        if not path.is_file() or path.suffix == ".specc":
+            continue
+        loaded = load(path)
+        if loaded.spec.name != program.name:
+            continue
+        digest = hashlib.sha256(loaded.source.text.encode()).hexdigest()
+        if digest != program.source.sha256:
+            raise _fault(
+                "V333",
+                trace,
+                f"the trace carries spec '{program.name}' with sha256 {_short(program)}, the project's "
+                f"{path} has {digest[:12]}: the robot was recorded under another spec",
+                f"judge it by one of them: --spec {path}, or the attached one after moving {path} away",
+            )
+
+
+def _spec_of(project: _Project, trace: Path) -> tuple[Path, str]:
+    folder = project.path.parent
+    for pattern, entry in project.spec.traces.items():
+        if any(trace.resolve() == path.resolve() for path in folder.glob(pattern)):
+            return folder / entry, f"since '{pattern}' names it in"
+    if len(project.spec.specs) == 1:
+        return folder / project.spec.specs[0], "the only spec of"
+    count = len(project.spec.specs)
+    raise _fault(
+        "V334",
+        trace,
+        f"{project.path} names {count} specs, and none of its `traces:` patterns fits this trace",
+        "add a pattern under `traces:`, or name one with --spec",
+    )
+
+
+def _short(program: Program) -> str:
+    return program.source.sha256[:12]
+
+
+def _fault(code: str, trace: Path, message: str, remedy: str) -> SpecError:
+    source = Source(str(trace), "")
+    return SpecError([Diagnostic(code, Severity.ERROR, message, source, None, help=remedy)])
