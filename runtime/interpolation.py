@@ -2,7 +2,7 @@
 
 Linear, or C² cubic B-splines with not-a-knot ends (a periodic axis has a periodic spline). Outside
 its domain a table has no value: NaN, never an extrapolation. A point on the edge is inside. A
-periodic axis has no outside; it wraps. d: axes, 1 to 5; m: columns, that is components of the value.
+periodic axis has no outside; it wraps. d: axes, 1 to 5; m: columns, the components of the value.
 """
 
 from functools import lru_cache
@@ -62,7 +62,12 @@ def lookup(table: Table, points: npt.ArrayLike) -> Array:
     m = table.coefficients.shape[-1]
     out = np.empty((len(flat), m))
     lookup_points(
-        block_address(), table.method is Method.CUBIC, *grid_of(table.axes, table.method), _column(table), flat, out
+        block_address(),
+        table.method is Method.CUBIC,
+        *grid_of(table.axes, table.method),
+        _column(table),
+        flat,
+        out,
     )
     return out.reshape(*leading, m)
 
@@ -77,7 +82,12 @@ def lookup_jacobian(table: Table, points: npt.ArrayLike) -> Array:
     m = table.coefficients.shape[-1]
     out = np.empty((len(flat), m, len(table.axes)))
     jacobian_points(
-        block_address(), table.method is Method.CUBIC, *grid_of(table.axes, table.method), _column(table), flat, out
+        block_address(),
+        table.method is Method.CUBIC,
+        *grid_of(table.axes, table.method),
+        _column(table),
+        flat,
+        out,
     )
     return out.reshape(*leading, m, len(table.axes))
 

@@ -13,7 +13,7 @@ MINIMUM_NODES = 4
 
 
 def not_a_knot(f: Array) -> Array:
-    """Coefficients (n + 2, ...) of the C² spline through f (n, ...), n >= 4, not-a-knot at the ends.
+    """Coefficients (n + 2, ...) of the C² spline through f (n, ...), n >= 4, with not-a-knot ends.
 
     Not-a-knot: the third derivative is continuous at the second and the last but one node, so that
     the fourth difference of c vanishes there. With the interpolation conditions around, this gives

@@ -1,1 +1,1 @@
-"""Compiled kernels. They use nothing of ours from outside this folder: its sources key their cache."""
+"""Compiled kernels. They use no code from outside this folder: its sources key their cache."""

@@ -27,6 +27,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 CONFIG: Any = numba.core.config  # its settings are made at run time, unknown to types
+COMPILER: Any = numba  # its types lack some of its options
 SOURCES = Path(__file__).parent
 _KEPT: list[Any] = []
 """Machine code that is called by address must outlive its callers."""
@@ -37,7 +38,7 @@ UNUSED_AFTER = 30 * 24 * 3600.0
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function that Python calls; its machine code is cached on disk."""
     with _cache_in(cache_folder()) as possible:
-        compiled: Callable[P, R] = numba.njit(cache=possible, nogil=True, error_model="numpy")(
+        compiled: Callable[P, R] = COMPILER.njit(cache=possible, nogil=True, error_model="numpy")(
             function
         )
     return compiled
@@ -45,14 +46,16 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
 
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function into each kernel that calls it; it has no cache of its own."""
-    compiled: Callable[P, R] = numba.njit(inline="always", error_model="numpy")(function)
+    compiled: Callable[P, R] = COMPILER.njit(
+        forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )(function)
     return compiled
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function that only kernels call: it lacks what a call from Python would need."""
-    compiled: Callable[P, R] = numba.njit(
-        nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True
+    compiled: Callable[P, R] = COMPILER.njit(
+        error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True
     )(function)
     return compiled
 
@@ -60,7 +63,7 @@ def part(function: Callable[P, R]) -> Callable[P, R]:
 def compiled_for_c(function: Callable[..., None], signature: Any) -> int:
     """Compile a function that kernels call by its address; its machine code is cached on disk."""
     with _cache_in(cache_folder()) as possible:
-        compiled = numba.cfunc(signature, cache=possible, error_model="numpy")(function)
+        compiled = COMPILER.cfunc(signature, cache=possible, error_model="numpy")(function)
     _KEPT.append(compiled)
     address: int = compiled.address
     return address

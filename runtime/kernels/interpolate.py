@@ -4,17 +4,27 @@ Points are taken in blocks. First the cell and the weights of each axis are work
 points of the block, then the weighted sum over the taps is taken point by point; index and weights
 are shared by all columns. d: axes; m: columns; u: coordinate in cells; t: position in a cell.
 """
-# ruff: noqa: PLR0917, FBT001 - kernels take arguments by place
+# ruff: noqa: FBT001 - kernels take arguments by place
 
 from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import carray, types
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.kernels.cache import compiled_for_c, inlined, kernel
-from runtime.kernels.vectors import BLOCK, LAST, OUTER, PLANE, call, contract, fma, stack_memory
+from runtime.kernels.vectors import (
+    BLOCK,
+    LAST,
+    OUTER,
+    PLANE,
+    call,
+    carray,
+    contract,
+    fma,
+    stack_memory,
+    types,
+)
 
 MOST_AXES = 5
 PRODUCTS = 64
@@ -23,7 +33,6 @@ ROWS = OUTER + PRODUCTS + 4
 SPARE = OUTER + PRODUCTS
 """Row of the weights that are about to be multiplied into the products."""
 MEMORY = ROWS * BLOCK
-POINTS = MOST_AXES * BLOCK
 HUGE = 2.0**52
 """Beyond it numbers have no fraction."""
 SIXTH = 1.0 / 6.0
@@ -32,17 +41,30 @@ TWO_THIRDS = 2.0 / 3.0
 
 @inlined
 def _locate(
-    cells: float, low: float, inverse_step: float, periodic: bool, x: Array, lanes: int, u: Array
+    cells: float,
+    origin: float,
+    low: float,
+    high: float,
+    inverse_step: float,
+    periodic: bool,
+    x: Array,
+    lanes: int,
+    u: Array,
 ) -> None:
-    """Coordinates in units of cells, wrapped where the axis is periodic."""
+    """Coordinates in units of cells; wrapped where the axis is periodic, else NaN outside."""
     for i in range(lanes):
-        u[i] = (x[i] - low) * inverse_step
+        u[i] = x[i]
     if periodic:
         for i in range(lanes):
+            u[i] = (u[i] - origin) * inverse_step
             if not abs(u[i]) < HUGE:
                 u[i] = np.fmod(u[i], cells)
         for i in range(lanes):
             u[i] = fma(-np.floor(u[i] / cells), cells, u[i])
+    else:
+        for i in range(lanes):
+            inside = np.nan if (u[i] < low) | (u[i] > high) else u[i]
+            u[i] = (inside - origin) * inverse_step
 
 
 @inlined
@@ -106,54 +128,43 @@ def _multiply(taps: int, stride: int, outer: int, shifts: Array, lanes: int, w: 
                 w[OUTER + into, i] = w[OUTER + j, i] * w[SPARE + tap, i]
 
 
-def _block(
-    cubic: int,
-    d: int,
+@inlined
+def _weigh_axes(
+    cubic: bool,
     m: int,
     slope: int,
-    counts_: Any,
-    lows_: Any,
-    inverse_steps_: Any,
-    periodic_: Any,
-    coefficients_: Any,
-    offset: int,
-    x_: Any,
+    counts: Integers,
+    lows: Array,
+    highs: Array,
+    inverse_steps: Array,
+    periodic: Booleans,
+    bounded: bool,
+    x: Array,
     x_start: int,
-    x_stride: int,
+    axis_stride: int,
+    point_stride: int,
     lanes: int,
-    out_: Any,
-    start: int,
-    column_stride: int,
-    lane_stride: int,
-) -> None:
-    """Look up `lanes` <= BLOCK points, or the derivative by axis `slope` if that is not negative.
-
-    x: coordinate a of lane i is at x_start + a x_stride + i. out: column k of lane i goes to
-    start + k column_stride + i lane_stride.
-    """
-    counts, periodic = carray(counts_, d), carray(periodic_, d)
-    lows, inverse_steps = carray(lows_, d), carray(inverse_steps_, d)
-    x = carray(x_, x_start + d * x_stride)
-    w = carray(stack_memory(MEMORY), (ROWS, BLOCK))
+    bases: Array,
+    shifts: Array,
+    w: Array,
+) -> tuple[int, int, int]:
+    """Fill bases, shifts and weights of a block; the row stride, how many products, the size."""
     u = carray(stack_memory(BLOCK), BLOCK)
-    bases = carray(stack_memory(BLOCK), BLOCK)
-    shifts = carray(stack_memory(PRODUCTS), PRODUCTS)
     taps = 4 if cubic else 2
-    stride, row_stride, outer = m, 0, 1
-    for i in range(lanes):
-        bases[i] = offset
-        w[PLANE, i], w[PLANE + 1, i], w[PLANE + 2, i], w[PLANE + 3, i] = 1.0, 0.0, 0.0, 0.0
+    d, stride, row_stride, outer = len(counts), m, 0, 1
     for back in range(d):
         a = d - 1 - back
-        at = x_start + a * x_stride
+        at = x_start + a * axis_stride
+        along = x[at : at + lanes * point_stride : point_stride]
+        low, high = (lows[a], highs[a]) if bounded else (-np.inf, np.inf)
         cells = float(counts[a] - taps + 1)
-        _locate(cells, lows[a], inverse_steps[a], periodic[a] != 0, x[at : at + lanes], lanes, u)
+        _locate(cells, lows[a], low, high, inverse_steps[a], periodic[a] != 0, along, lanes, u)
         _split(cells, float(stride), u, lanes, bases)
         row = (LAST, PLANE, OUTER, SPARE, SPARE)[back]
         if a == slope:
-            _weigh_slopes(cubic != 0, inverse_steps[a], u, lanes, w[row : row + 4])
+            _weigh_slopes(cubic, inverse_steps[a], u, lanes, w[row : row + 4])
         else:
-            _weigh(cubic != 0, u, lanes, w[row : row + 4])
+            _weigh(cubic, u, lanes, w[row : row + 4])
         if back == 1:
             row_stride = stride
         elif back == 2:
@@ -164,22 +175,67 @@ def _block(
             _multiply(taps, stride, outer, shifts, lanes, w)
             outer *= taps
         stride *= counts[a]
-    coefficients, out = carray(coefficients_, stride), carray(out_, start + lanes)
-    block = (
+    return row_stride, outer, stride
+
+
+def _look_up(
+    cubic: int,
+    d: int,
+    m: int,
+    slope: int,
+    bounded: int,
+    counts: Any,
+    lows: Any,
+    highs: Any,
+    inverse_steps: Any,
+    periodic: Any,
+    coefficients: Any,
+    offset: int,
+    x: Any,
+    x_start: int,
+    axis_stride: int,
+    point_stride: int,
+    lanes: int,
+    out: Any,
+    start: int,
+    column_stride: int,
+    lane_stride: int,
+) -> None:
+    """Look up `lanes` <= BLOCK points, or the derivative by axis `slope` if that is not negative.
+
+    Arrays come as pointers. bounded: whether points outside [low, high] give NaN; else the cells
+    at the edge go on. Coordinate a of lane i is x[x_start + a axis_stride + i point_stride];
+    column k of lane i goes to out[start + k column_stride + i lane_stride].
+    """
+    w = carray(stack_memory(MEMORY), (ROWS, BLOCK))
+    bases = carray(stack_memory(BLOCK), BLOCK)
+    shifts = carray(stack_memory(PRODUCTS), PRODUCTS)
+    bases[:lanes] = offset
+    if d == 1:  # the last axis but one is made up: the same row, once
+        w[PLANE, :lanes] = 1.0
+        w[PLANE + 1 : PLANE + 4, :lanes] = 0.0
+    row_stride, outer, size = _weigh_axes(
+        cubic != 0,
         m,
-        coefficients,
-        bases,
-        w,
-        row_stride,
-        outer,
-        shifts,
+        slope,
+        carray(counts, d),
+        carray(lows, d),
+        carray(highs, d),
+        carray(inverse_steps, d),
+        carray(periodic, d),
+        bounded != 0,
+        carray(x, x_start + d * axis_stride + lanes * point_stride),
+        x_start,
+        axis_stride,
+        point_stride,
         lanes,
-        out,
-        start,
-        column_stride,
-        lane_stride,
+        bases,
+        shifts,
+        w,
     )
-    contract(cubic != 0, d, block)
+    table = m, carray(coefficients, offset + size), bases, w, row_stride, outer, shifts
+    into = carray(out, start + m * column_stride + lanes * lane_stride)
+    contract(cubic != 0, d, (*table, lanes, into, start, column_stride, lane_stride))
 
 
 @cache
@@ -187,10 +243,9 @@ def block_address() -> int:
     """Where the machine code of a block's lookup is; compiled on the first call."""
     numbers, integers = types.CPointer(types.float64), types.CPointer(types.int64)
     flags, i = types.CPointer(types.uint8), types.int64
-    signature = types.void(
-        i, i, i, i, integers, numbers, numbers, flags, numbers, i, numbers, i, i, i, numbers, i, i, i
-    )
-    return compiled_for_c(_block, signature)
+    table = integers, numbers, numbers, numbers, flags, numbers, i
+    signature = types.void(i, i, i, i, i, *table, numbers, i, i, i, i, numbers, i, i, i)
+    return compiled_for_c(_look_up, signature)
 
 
 @kernel
@@ -216,24 +271,9 @@ def lookup_lanes(
     """
     across, along = points.shape[1], out.shape[1]
     for at in range(0, lanes, BLOCK):
-        table = counts, lows, inverse_steps, periodic, coefficients, offset
-        call(
-            address,
-            (cubic, d, m, -1, *table, points, at, across, min(BLOCK, lanes - at), out, at, along, 1),
-        )
-
-
-@inlined
-def _gather(
-    points: Array, start: int, lanes: int, lows: Array, highs: Array, periodic: Booleans, x: Array
-) -> None:
-    """A block of points, axis by axis; NaN where they are outside."""
-    for a in range(points.shape[1]):
-        low = -np.inf if periodic[a] else lows[a]
-        high = np.inf if periodic[a] else highs[a]
-        for i in range(lanes):
-            value = points[start + i, a]
-            x[a * BLOCK + i] = value if low <= value <= high else np.nan
+        part = min(BLOCK, lanes - at)
+        table = counts, lows, lows, inverse_steps, periodic, coefficients, offset
+        call(address, (cubic, d, m, -1, 0, *table, points, at, across, 1, part, out, at, along, 1))
 
 
 @kernel
@@ -251,12 +291,10 @@ def lookup_points(
 ) -> None:
     """Interpolate at points (N, d) into out (N, m); NaN outside the domain."""
     (n, d), m = points.shape, out.shape[1]
-    x = carray(stack_memory(POINTS), POINTS)
-    table = counts, lows, inverse_steps, periodic, coefficients, 0
+    table = counts, lows, highs, inverse_steps, periodic, coefficients, 0
     for at in range(0, n, BLOCK):
         lanes = min(BLOCK, n - at)
-        _gather(points, at, lanes, lows, highs, periodic, x)
-        call(address, (cubic, d, m, -1, *table, x, 0, BLOCK, lanes, out, at * m, 1, m))
+        call(address, (cubic, d, m, -1, 1, *table, points, at * d, 1, d, lanes, out, at * m, 1, m))
 
 
 @kernel
@@ -274,11 +312,9 @@ def jacobian_points(
 ) -> None:
     """Derivatives at points (N, d) into out (N, m, d); NaN outside the domain."""
     (n, d), m = points.shape, out.shape[1]
-    x = carray(stack_memory(POINTS), POINTS)
-    table = counts, lows, inverse_steps, periodic, coefficients, 0
+    table = counts, lows, highs, inverse_steps, periodic, coefficients, 0
     for at in range(0, n, BLOCK):
-        lanes = min(BLOCK, n - at)
-        _gather(points, at, lanes, lows, highs, periodic, x)
+        where = at * d, 1, d, min(BLOCK, n - at)
         for a in range(d):
-            to = at * m * d + a
-            call(address, (cubic, d, m, a, *table, x, 0, BLOCK, lanes, out, to, d, m * d))
+            to = at * m * d + a, d, m * d
+            call(address, (cubic, d, m, a, 1, *table, points, *where, out, *to))

@@ -9,38 +9,49 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias, final
 
+import numba
+import numba.extending
 from llvmlite import ir  # type: ignore[import-untyped]  # no stubs
-from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
 
 Value: TypeAlias = Any  # of the untyped llvmlite
 Vectors: TypeAlias = list[Value]
+
+NUMBA: Any = numba  # its own types do not cover what is used of it here
+types: Any = NUMBA.types
+carray: Any = NUMBA.carray
+codegen: Any = cgutils
 
 F64 = ir.DoubleType()
 I64 = ir.IntType(64)
 WIDTH = 4
 """Numbers in a vector."""
-BLOCK = 32
+BLOCK = 64
 """Points that are looked up together; their weights stay in the nearest cache."""
 LAST, PLANE, OUTER = 0, 4, 8
 """First row of the weights of the last axis, the last but one, and all axes before (products)."""
 
 
-@intrinsic(prefer_literal=True)
+def _intrinsic(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Make a function that kernels can call; numba asks it for types and instructions."""
+    made: Callable[..., Any] = NUMBA.extending.intrinsic(prefer_literal=True)(function)
+    return made
+
+
+@_intrinsic
 def stack_memory(_typing: Any, count: Any) -> Any:
     """A pointer to `count` numbers on the stack of the kernel; `count` is a constant."""
     size = count.literal_value
 
     def generate(_context: Any, builder: Any, _signature: Any, _arguments: Any) -> Value:
-        return cgutils.alloca_once(builder, F64, size=size)
+        return codegen.alloca_once(builder, F64, size=size)
 
     return types.CPointer(types.float64)(count), generate
 
 
-@intrinsic
+@_intrinsic
 def fma(_typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """a * b + c, rounded once."""
+    """Multiply a and b and add c, rounded once."""
 
     def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Value:
         return _Emitter(builder).fma(*arguments)
@@ -48,7 +59,7 @@ def fma(_typing: Any, a: Any, b: Any, c: Any) -> Any:
     return types.float64(a, b, c), generate
 
 
-@intrinsic
+@_intrinsic
 def call(_typing: Any, address: Any, arguments: Any) -> Any:
     """Call the function at `address` with a tuple of numbers and arrays (by their first element).
 
@@ -71,7 +82,7 @@ def call(_typing: Any, address: Any, arguments: Any) -> Any:
     return types.void(address, arguments), generate
 
 
-@intrinsic
+@_intrinsic
 def contract(_typing: Any, cubic: Any, d: Any, block: Any) -> Any:
     """For each lane, write the sums of weights times coefficients, one per column.
 
@@ -135,10 +146,10 @@ class _Emitter:
         return self.builder.shuffle_vector(a, b, ir.Constant(kind, positions))
 
     def fma(self, a: Value, b: Value, c: Value) -> Value:
-        """a * b + c of numbers or vectors, rounded once."""
+        """Multiply a and b and add c, numbers or vectors, rounded once."""
         kind = a.type
         name = "llvm.fma.f64" if kind == F64 else f"llvm.fma.v{kind.count}f64"
-        function = cgutils.get_or_insert_function(
+        function = codegen.get_or_insert_function(
             self.builder.module, ir.FunctionType(kind, [kind] * 3), name
         )
         return self.builder.call(function, [a, b, c])
@@ -216,7 +227,7 @@ def _by_columns(block: _Block, taps: int, *, flat: bool, columns: int = 1) -> No
     if columns == WIDTH:
         last = builder.sub(block.m, I64(WIDTH))
         rounds = builder.sdiv(builder.add(block.m, I64(WIDTH - 1)), I64(WIDTH))
-        with cgutils.for_range(builder, rounds) as loop:
+        with codegen.for_range(builder, rounds) as loop:
             first = builder.mul(loop.index, I64(WIDTH))
             first = builder.select(builder.icmp_signed("<", first, last), first, last)
             _over_lanes(block, _Taps(taps, WIDTH), first, flat=flat)
@@ -231,7 +242,7 @@ def _by_columns(block: _Block, taps: int, *, flat: bool, columns: int = 1) -> No
 def _over_lanes(block: _Block, taps: _Taps, column: Value, *, flat: bool) -> None:
     """Write the columns from `column` on, for all lanes."""
     emit, builder = block.emit, block.emit.builder
-    with cgutils.for_range(builder, block.lanes) as loop:
+    with codegen.for_range(builder, block.lanes) as loop:
         base = builder.fptosi(emit.number(block.bases, loop.index), I64)
         corner = emit.at(block.coefficients, builder.add(base, column))
         weights = emit.at(block.weights, loop.index)
@@ -251,9 +262,9 @@ def _outer(block: _Block, taps: _Taps, corner: Value, weights: Value) -> Vectors
     slots = []
     for _, width in _loads(block, taps):
         nothing = ir.Constant(ir.VectorType(F64, width), None)
-        slots.append(cgutils.alloca_once(builder, nothing.type))
+        slots.append(codegen.alloca_once(builder, nothing.type))
         builder.store(nothing, slots[-1])
-    with cgutils.for_range(builder, block.outer) as loop:
+    with codegen.for_range(builder, block.outer) as loop:
         shift = builder.fptosi(emit.number(block.shifts, loop.index), I64)
         row = builder.mul(builder.add(loop.index, I64(OUTER)), I64(BLOCK))
         plane = _plane(block, taps, emit.at(corner, shift), weights)
