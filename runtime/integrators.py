@@ -12,9 +12,8 @@ import numpy as np
 
 from runtime.arrays import Array, Integers
 from runtime.flow import Flow, registers
-from runtime.kernels.adapt import Task, adapt
-from runtime.kernels.blocks import Domain, Results
-from runtime.kernels.march import Course, march
+from runtime.kernels.adapt import adapt
+from runtime.kernels.march import march
 from runtime.rollout import Ending
 from runtime.tape import read_only_integers, read_only_view
 
@@ -78,16 +77,20 @@ def fixed_steps(
     n = len(flow.program.states)
     moving = np.flatnonzero(flow.moves & ~np.isin(np.arange(n), columns))
     start = registers(flow, x0, flow.defaults[n : n + p])
-    results = _empty(len(x0), steps + 1, n)
+    states, ended = _empty(len(x0), steps + 1, n)
     march(
         flow.tape,
-        _domain(flow, moving),
+        flow.domain,
+        read_only_integers(moving),
         read_only_view(start),
-        Course(read_only_view(times), read_only_view(inputs), read_only_integers(columns)),
+        read_only_view(times),
+        read_only_view(inputs),
+        read_only_integers(columns),
         int(flow.is_map),
-        results,
+        states,
+        ended,
     )
-    return _trajectories(results)
+    return _trajectories(states, ended)
 
 
 def adaptive(  # noqa: PLR0917  # as one writes an initial value problem, then tolerances
@@ -108,37 +111,26 @@ def adaptive(  # noqa: PLR0917  # as one writes an initial value problem, then t
     assert not flow.is_map, "a step map has no rates"
     n = len(flow.program.states)
     start = registers(flow, x0, u)
-    results = _empty(len(x0), len(times), n)
-    task = Task(
+    states, ended = _empty(len(x0), len(times), n)
+    adapt(
+        flow.tape,
+        flow.domain,
+        read_only_integers(np.flatnonzero(flow.moves)),
+        read_only_view(start),
         read_only_view(times),
         read_only_view(np.broadcast_to(np.asarray(atol, dtype=np.float64), (n,))),
         float(rtol),
         most_steps,
+        states,
+        ended,
     )
-    adapt(
-        flow.tape, _domain(flow, np.flatnonzero(flow.moves)), read_only_view(start), task, results
-    )
-    return _trajectories(results)
+    return _trajectories(states, ended)
 
 
-def _domain(flow: Flow, moving: Integers) -> Domain:
-    return Domain(flow.lows, flow.highs, read_only_integers(moving))
+def _empty(batch: int, samples: int, n: int) -> tuple[Array, Array]:
+    return np.empty((batch, samples, n)), np.empty((batch, 4 + n))
 
 
-def _empty(batch: int, samples: int, n: int) -> Results:
-    return Results(
-        np.empty((batch, samples, n)),
-        np.empty((batch, 3), dtype=np.int64),
-        np.empty((batch, 1 + n)),
-    )
-
-
-def _trajectories(results: Results) -> Trajectories:
-    return Trajectories(
-        states=results.states,
-        endings=results.endings[:, 0],
-        variables=results.endings[:, 1],
-        sides=results.endings[:, 2],
-        ended_at=results.ended[:, 0],
-        ended_in=results.ended[:, 1:],
-    )
+def _trajectories(states: Array, ended: Array) -> Trajectories:
+    codes = ended[:, :3].astype(np.int64)
+    return Trajectories(states, codes[:, 0], codes[:, 1], codes[:, 2], ended[:, 3], ended[:, 4:])

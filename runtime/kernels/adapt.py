@@ -2,6 +2,9 @@
 
 Every lane has its own time and step; a lane whose trajectory has ended takes the next one, so a
 block stays full, and a trajectory's numbers do not depend on the others.
+
+pace: (5, LANES) per lane its trajectory, its next sample, how many steps were tried, whether its
+first rates are still to be worked out, whether the last step was rejected.
 """
 # ruff: noqa: PLR0917 - kernels take arguments by place
 
@@ -10,30 +13,30 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from runtime.arrays import Array, Booleans, Integers
+from runtime.arrays import Array, Integers
 from runtime.kernels.blocks import (
     COMPLETED,
     DIVERGED,
     LEFT_DOMAIN,
     STAGES,
     TOO_MANY_STEPS,
-    Block,
-    Domain,
-    Results,
+    Places,
+    begin_dense,
     blank,
-    end,
-    end_at,
+    copy_lane,
+    copy_rows,
     first_exit,
     is_finite,
     load,
-    nearer_side,
-    new_block,
-    outside,
+    note_end,
+    note_exit,
+    outsider,
+    places_of,
     point,
-    side_of,
     take_rates,
+    work_space,
 )
-from runtime.kernels.cache import kernel, part
+from runtime.kernels.cache import inlined, kernel, part
 from runtime.kernels.machine import run
 from runtime.kernels.tape import LANES, Tape
 
@@ -70,325 +73,335 @@ DENSE: Final = np.array(
 # Step control: Hairer, Norsett, Wanner II.4 and IV.2 (PI controller, Gustafsson).
 SAFETY, MEMORY, SHRINK, GROW = 0.9, 0.04, 0.2, 10.0
 EXPONENT: Final = 0.2 - 0.75 * MEMORY
+LEAST_ERROR: Final = 1e-4
 
 
-class Task(NamedTuple):
-    """What every trajectory shares: sample times (T,), tolerances rtol and (n,) atol, limits."""
+TRAJECTORY, SAMPLE, TRIES, FRESH, REJECTED = range(5)
 
-    times: Array
-    atol: Array
+
+class Aim(NamedTuple):
+    """When it ends, forwards or backwards; the relative tolerance; how many steps may be tried."""
+
+    end: float
     rtol: float
     most_steps: int
 
 
-class Pace(NamedTuple):
-    """Per lane: its trajectory, the next sample, steps tried, the last error, fresh, rejected."""
-
-    trajectory: Integers
-    sample: Integers
-    tries: Integers
-    error: Array
-    fresh: Booleans
-    rejected: Booleans
-
-
 @kernel
-def adapt(tape: Tape, domain: Domain, start: Array, task: Task, results: Results) -> None:
-    """Integrate from the registers `start` (B, r) at the first time, forwards or backwards."""
-    block = new_block(tape)
-    pace = Pace(
-        np.zeros(LANES, dtype=np.int64),
-        np.zeros(LANES, dtype=np.int64),
-        np.zeros(LANES, dtype=np.int64),
-        np.zeros(LANES),
-        np.zeros(LANES, dtype=np.bool_),
-        np.zeros(LANES, dtype=np.bool_),
-    )
+def adapt(
+    tape: Tape,
+    domain: Array,
+    moving: Integers,
+    start: Array,
+    times: Array,
+    atol: Array,
+    rtol: float,
+    most_steps: int,
+    states: Array,
+    ended: Array,
+) -> None:
+    """Integrate from the registers `start` (B, r) at times[0]; samples at times (T,).
+
+    atol: (n,). Fills states (B, T, n) and ended (B, 4 + n).
+    """
+    at = places_of(tape)
+    w = work_space(tape, at)
+    pace = np.zeros((5, LANES), dtype=np.int64)
+    aim = Aim(times[-1], rtol, most_steps)
     waiting = 0
     lanes = 0
     while True:
         lane = 0
         while lane < LANES:
-            if lane < lanes and block.alive[lane]:
+            if lane < lanes and w[at.alive, lane] != 0.0:
                 lane += 1
             elif waiting < start.shape[0]:
-                _take_up(block, pace, domain, lane, waiting, start, task, results)
+                _take_up(w, at, pace, domain, lane, start, waiting, times, states, ended)
                 waiting += 1
                 lanes = max(lanes, lane + 1)
             elif lane < lanes:
                 lanes -= 1
-                _move(block, pace, lanes, lane)
+                _move(w, pace, lanes, lane)
             else:
                 break
         if lanes == 0:
             return
-        _attempt(tape, block, pace, domain, task, lanes, results)
+        _attempt(tape, w, at, pace, moving, atol, aim, lanes, states, ended)
         for i in range(lanes):
-            if block.alive[i]:
-                _judge(block, pace, domain, task, i, results)
+            if w[at.alive, i] != 0.0:
+                _judge(w, at, pace, domain, moving, atol, aim, times, i, states, ended)
 
 
 @part
 def _take_up(
-    block: Block,
-    pace: Pace,
-    domain: Domain,
+    w: Array,
+    at: Places,
+    pace: Integers,
+    domain: Array,
     lane: int,
-    b: int,
     start: Array,
-    task: Task,
-    results: Results,
+    b: int,
+    times: Array,
+    states: Array,
+    ended: Array,
 ) -> None:
     """Begin trajectory b in a lane; it ends at once outside the domain or where T = 1."""
-    load(block, lane, start[b])
-    block.t[lane] = task.times[0]
-    pace.trajectory[lane] = b
-    pace.sample[lane] = 1
-    pace.tries[lane] = 0
-    pace.error[lane] = 1e-4
-    pace.fresh[lane] = True
-    pace.rejected[lane] = False
-    left = outside(block.rows, lane, 0, domain.lows.shape[0], domain)
-    if left >= 0:
-        side = side_of(block.rows[left, lane], domain.highs[left])
-        _stop(block, pace, lane, LEFT_DOMAIN, left, side, results)
-        blank(results, b, 0)
+    load(w, at, lane, start, b)
+    w[at.t, lane] = times[0]
+    w[at.error, lane] = LEAST_ERROR
+    pace[TRAJECTORY, lane] = b
+    pace[SAMPLE, lane] = 0
+    pace[TRIES, lane] = 0
+    pace[FRESH, lane] = 1
+    pace[REJECTED, lane] = 0
+    variable = outsider(w, 0, domain, domain.shape[1], lane)
+    if variable >= 0:
+        _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
+        note_exit(variable, w[variable, lane], domain, ended, b)
         return
-    for i in range(block.x.shape[0]):
-        results.states[b, 0, i] = block.x[i, lane]
-    if task.times.shape[0] == 1:
-        _stop(block, pace, lane, COMPLETED, -1, 0, results)
+    for i in range(at.n):
+        states[b, 0, i] = w[at.x + i, lane]
+    pace[SAMPLE, lane] = 1
+    if times.shape[0] == 1:
+        _stop(w, at, pace, lane, COMPLETED, states, ended)
 
 
 @part
 def _stop(
-    block: Block, pace: Pace, lane: int, code: int, variable: int, side: int, results: Results
+    w: Array, at: Places, pace: Integers, lane: int, code: int, states: Array, ended: Array
 ) -> None:
     """End a lane where it is now."""
-    b = pace.trajectory[lane]
-    end(results, b, code, variable, side, block.t[lane])
-    end_at(results, b, block.x, lane)
-    blank(results, b, pace.sample[lane])
-    block.alive[lane] = False
+    b = pace[TRAJECTORY, lane]
+    note_end(w, at, lane, code, ended, b)
+    blank(states, b, pace[SAMPLE, lane])
 
 
 @part
-def _move(block: Block, pace: Pace, source: int, lane: int) -> None:
+def _move(w: Array, pace: Integers, source: int, lane: int) -> None:
     """Put what lane `source` does into `lane`."""
-    for i in range(block.rows.shape[0]):
-        block.rows[i, lane] = block.rows[i, source]
-    for i in range(block.x.shape[0]):
-        block.x[i, lane] = block.x[i, source]
-        # Of the rates only the first are kept from step to step.
-        block.k[0, i, lane] = block.k[0, i, source]
-    block.t[lane] = block.t[source]
-    block.h[lane] = block.h[source]
-    block.alive[lane] = block.alive[source]
-    pace.trajectory[lane] = pace.trajectory[source]
-    pace.sample[lane] = pace.sample[source]
-    pace.tries[lane] = pace.tries[source]
-    pace.error[lane] = pace.error[source]
-    pace.fresh[lane] = pace.fresh[source]
-    pace.rejected[lane] = pace.rejected[source]
+    for i in range(w.shape[0]):
+        w[i, lane] = w[i, source]
+    for i in range(pace.shape[0]):
+        pace[i, lane] = pace[i, source]
 
 
-@part
+@inlined
 def _attempt(
     tape: Tape,
-    block: Block,
-    pace: Pace,
-    domain: Domain,
-    task: Task,
+    w: Array,
+    at: Places,
+    pace: Integers,
+    moving: Integers,
+    atol: Array,
+    aim: Aim,
     lanes: int,
-    results: Results,
+    states: Array,
+    ended: Array,
 ) -> None:
-    """One step of every lane, from x to new with k[0] .. k[6]; k[0] is the last one's k[6]."""
-    first = 1
+    """One step of every lane, from x to new; its first rates are the last ones of the step before.
+
+    Where a lane is fresh, all lanes work out their first rates: the same numbers again.
+    """
+    fresh = 0
     for lane in range(lanes):
-        if pace.fresh[lane]:
-            first = 0
-    for stage in range(first, STAGES):
+        fresh += pace[FRESH, lane]
+    for stage in range(0 if fresh else 1, STAGES):
         if stage == 1:
-            _choose_steps(block, pace, domain, task, lanes, results)
-        _set_stage(block, domain.moving, stage, lanes)
-        run(tape, block.rows, block.points, lanes)
-        take_rates(tape, block, stage, lanes)
-    for i in range(block.x.shape[0]):
-        for lane in range(lanes):
-            block.new[i, lane] = block.rows[i, lane]
+            _choose_steps(w, at, pace, moving, atol, aim, lanes, states, ended)
+        _set_stage(w, at, moving, stage, lanes)
+        run(tape, w, lanes)
+        take_rates(tape, w, at.k + stage * at.n, lanes)
+    copy_rows(w, 0, at.new, at.n, lanes)
 
 
-@part
-def _set_stage(block: Block, moving: Integers, stage: int, lanes: int) -> None:
+@inlined
+def _set_stage(w: Array, at: Places, moving: Integers, stage: int, lanes: int) -> None:
     for j in range(moving.shape[0]):
         i = moving[j]
         for lane in range(lanes):
-            block.rows[i, lane] = 0.0
+            w[i, lane] = 0.0
         for before in range(stage):
             weight = TABLEAU[stage, before]
+            k = at.k + before * at.n + i
             for lane in range(lanes):
-                block.rows[i, lane] += weight * block.k[before, i, lane]
+                w[i, lane] += weight * w[k, lane]
         for lane in range(lanes):
-            block.rows[i, lane] = block.x[i, lane] + block.h[lane] * block.rows[i, lane]
+            w[i, lane] = w[at.x + i, lane] + w[at.h, lane] * w[i, lane]
 
 
 @part
 def _choose_steps(
-    block: Block,
-    pace: Pace,
-    domain: Domain,
-    task: Task,
+    w: Array,
+    at: Places,
+    pace: Integers,
+    moving: Integers,
+    atol: Array,
+    aim: Aim,
     lanes: int,
-    results: Results,
+    states: Array,
+    ended: Array,
 ) -> None:
-    """First steps of fresh lanes, and no step beyond the last time."""
-    final = task.times[-1]
+    """First steps of fresh lanes, and no step beyond the end."""
     for lane in range(lanes):
-        left = final - block.t[lane]
-        if pace.fresh[lane]:
-            pace.fresh[lane] = False
-            block.h[lane] = math.copysign(_first_step(block, domain, task, lane), left)
-            if not is_finite(block.k[0], lane):
-                _stop(block, pace, lane, DIVERGED, -1, 0, results)
-        if abs(block.h[lane]) * 1.01 >= abs(left):
-            block.h[lane] = left
+        left = aim.end - w[at.t, lane]
+        if pace[FRESH, lane] == 1:
+            pace[FRESH, lane] = 0
+            first = _first_step(w, at, moving, atol, aim.rtol, lane)
+            w[at.h, lane] = math.copysign(first, left)
+            if not is_finite(w, at.k, at.n, lane):
+                _stop(w, at, pace, lane, DIVERGED, states, ended)
+        if abs(w[at.h, lane]) * 1.01 >= abs(left):
+            w[at.h, lane] = left
 
 
 @part
-def _first_step(block: Block, domain: Domain, task: Task, lane: int) -> float:
+def _first_step(
+    w: Array, at: Places, moving: Integers, atol: Array, rtol: float, lane: int
+) -> float:
     """A hundredth of the time in which the state would double (Hairer, Norsett, Wanner II.4)."""
     size = 0.0
     speed = 0.0
-    for j in range(domain.moving.shape[0]):
-        i = domain.moving[j]
-        scale = task.atol[i] + task.rtol * abs(block.x[i, lane])
-        size = max(size, abs(block.x[i, lane]) / scale)
-        speed = max(speed, abs(block.k[0, i, lane]) / scale)
+    for j in range(moving.shape[0]):
+        i = moving[j]
+        scale = atol[i] + rtol * abs(w[at.x + i, lane])
+        size = max(size, abs(w[at.x + i, lane]) / scale)
+        speed = max(speed, abs(w[at.k + i, lane]) / scale)
     return 0.01 * size / speed if size > 1e-5 and speed > 1e-5 else 1e-6
 
 
 @part
 def _judge(
-    block: Block, pace: Pace, domain: Domain, task: Task, lane: int, results: Results
+    w: Array,
+    at: Places,
+    pace: Integers,
+    domain: Array,
+    moving: Integers,
+    atol: Array,
+    aim: Aim,
+    times: Array,
+    lane: int,
+    states: Array,
+    ended: Array,
 ) -> None:
     """Accept or reject a lane's step, and choose the next one's length."""
-    h = block.h[lane]
-    error = _error(block, domain, task, lane)
-    pace.tries[lane] += 1
+    h = w[at.h, lane]
+    error = _error(w, at, moving, atol, aim.rtol, lane)
+    pace[TRIES, lane] += 1
     if error <= 1.0:
-        growth = error**EXPONENT / (SAFETY * pace.error[lane] ** MEMORY)
-        growth = min(1.0 / SHRINK, max(1.0 / GROW, growth))
-        if pace.rejected[lane]:
-            growth = max(1.0, growth)
-        pace.error[lane] = max(error, 1e-4)
-        pace.rejected[lane] = False
-        _accept(block, pace, domain, task, lane, results)
-        block.h[lane] = h / growth
+        shrink = error**EXPONENT / (SAFETY * w[at.error, lane] ** MEMORY)
+        shrink = min(1.0 / SHRINK, max(1.0 / GROW, shrink))
+        if pace[REJECTED, lane] == 1:
+            shrink = max(1.0, shrink)
+        w[at.error, lane] = max(error, LEAST_ERROR)
+        pace[REJECTED, lane] = 0
+        _accept(w, at, pace, domain, moving, aim, times, lane, states, ended)
+        w[at.h, lane] = h / shrink
     else:
-        # Also where the step met a number that is not finite: error is NaN or infinite then.
+        # Also where the step met a number that is not finite: the error is NaN or infinite then.
         shrink = error**EXPONENT / SAFETY
-        block.h[lane] = h / shrink if shrink < 1.0 / SHRINK else h * SHRINK
-        pace.rejected[lane] = True
-        if block.t[lane] + 0.1 * block.h[lane] == block.t[lane]:
-            _stop(block, pace, lane, DIVERGED, -1, 0, results)
-    if block.alive[lane] and pace.tries[lane] >= task.most_steps:
-        _stop(block, pace, lane, TOO_MANY_STEPS, -1, 0, results)
+        w[at.h, lane] = h / shrink if shrink < 1.0 / SHRINK else h * SHRINK
+        pace[REJECTED, lane] = 1
+        if w[at.t, lane] + 0.1 * w[at.h, lane] == w[at.t, lane]:
+            _stop(w, at, pace, lane, DIVERGED, states, ended)
+    if w[at.alive, lane] != 0.0 and pace[TRIES, lane] >= aim.most_steps:
+        _stop(w, at, pace, lane, TOO_MANY_STEPS, states, ended)
 
 
 @part
-def _error(block: Block, domain: Domain, task: Task, lane: int) -> float:
+def _error(w: Array, at: Places, moving: Integers, atol: Array, rtol: float, lane: int) -> float:
     """The largest error of a state in units of its tolerance; NaN where it is not finite."""
     largest = 0.0
-    for j in range(domain.moving.shape[0]):
-        i = domain.moving[j]
+    for j in range(moving.shape[0]):
+        i = moving[j]
         error = 0.0
         for stage in range(STAGES):
-            error += ERROR[stage] * block.k[stage, i, lane]
-        size = max(abs(block.x[i, lane]), abs(block.new[i, lane]))
-        error = abs(error * block.h[lane]) / (task.atol[i] + task.rtol * size)
+            error += ERROR[stage] * w[at.k + stage * at.n + i, lane]
+        size = max(abs(w[at.x + i, lane]), abs(w[at.new + i, lane]))
+        error = abs(error * w[at.h, lane]) / (atol[i] + rtol * size)
         if not error <= largest:
             largest = error
-    return largest if is_finite(block.new, lane) else np.nan
+    return largest if is_finite(w, at.new, at.n, lane) else np.nan
 
 
 @part
 def _accept(
-    block: Block, pace: Pace, domain: Domain, task: Task, lane: int, results: Results
+    w: Array,
+    at: Places,
+    pace: Integers,
+    domain: Array,
+    moving: Integers,
+    aim: Aim,
+    times: Array,
+    lane: int,
+    states: Array,
+    ended: Array,
 ) -> None:
     """Give the samples within the step and go on to its end, or to where the domain is left."""
-    n = block.x.shape[0]
-    h = block.h[lane]
-    final = task.times[-1]
-    reached = final if h == final - block.t[lane] else block.t[lane] + h
-    _set_dense(block, domain, lane)
-    variable = outside(block.new, lane, 0, n, domain)
+    h = w[at.h, lane]
+    reached = aim.end if h == aim.end - w[at.t, lane] else w[at.t, lane] + h
+    variable = outsider(w, at.new, domain, at.n, lane)
+    sampled = (times[pace[SAMPLE, lane]] - reached) * h <= 0.0
     theta = 1.0
-    if variable >= 0 or _may_leave(block, domain, lane):
-        theta, found = first_exit(block.dense, domain)
+    if variable >= 0 or sampled or _may_leave(w, at, domain, moving, lane):
+        _set_dense(w, at, moving, lane)
+        theta, found = first_exit(w, at, lane, domain)
         variable = found if found >= 0 else variable
-    _give_samples(block, pace, task, lane, theta, results)
+        _give_samples(w, at, pace, times, theta, lane, states)
     if variable >= 0:
-        for i in range(n):
-            block.x[i, lane] = point(block.dense, i, theta)
-        block.t[lane] += theta * h
-        side = nearer_side(block.x[variable, lane], variable, domain)
-        _stop(block, pace, lane, LEFT_DOMAIN, variable, side, results)
+        w[at.t, lane] += theta * h
+        for i in range(at.n):
+            w[at.x + i, lane] = point(w, at.dense + 5 * i, lane, theta)
+        _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
+        value = w[at.x + variable, lane]
+        note_exit(variable, value, domain, ended, pace[TRAJECTORY, lane])
         return
-    for i in range(n):
-        block.x[i, lane] = block.new[i, lane]
-        block.k[0, i, lane] = block.k[STAGES - 1, i, lane]
-    block.t[lane] = reached
-    if pace.sample[lane] == task.times.shape[0]:
-        _stop(block, pace, lane, COMPLETED, -1, 0, results)
+    w[at.t, lane] = reached
+    copy_lane(w, at.new, at.x, at.n, lane)
+    copy_lane(w, at.k + (STAGES - 1) * at.n, at.k, at.n, lane)
+    if pace[SAMPLE, lane] == times.shape[0]:
+        _stop(w, at, pace, lane, COMPLETED, states, ended)
 
 
 @part
-def _set_dense(block: Block, domain: Domain, lane: int) -> None:
+def _set_dense(w: Array, at: Places, moving: Integers, lane: int) -> None:
     """The polynomial of order 4 through the step."""
-    dense = block.dense
-    h = block.h[lane]
-    for i in range(block.x.shape[0]):
-        dense[0, i] = block.x[i, lane]
-        dense[1, i] = dense[2, i] = dense[3, i] = dense[4, i] = 0.0
-    for j in range(domain.moving.shape[0]):
-        i = domain.moving[j]
-        dense[1, i] = block.new[i, lane] - block.x[i, lane]
-        dense[2, i] = h * block.k[0, i, lane] - dense[1, i]
-        dense[3, i] = dense[1, i] - h * block.k[STAGES - 1, i, lane] - dense[2, i]
+    begin_dense(w, at, moving, lane, at.k + (STAGES - 1) * at.n)
+    for j in range(moving.shape[0]):
+        i = moving[j]
+        total = 0.0
         for stage in range(STAGES):
-            dense[4, i] += h * DENSE[stage] * block.k[stage, i, lane]
+            total += DENSE[stage] * w[at.k + stage * at.n + i, lane]
+        w[at.dense + 5 * i + 4, lane] = w[at.h, lane] * total
 
 
 @part
-def _may_leave(block: Block, domain: Domain, lane: int) -> bool:
+def _may_leave(w: Array, at: Places, domain: Array, moving: Integers, lane: int) -> bool:
     """Whether a step with both ends inside is so near an edge that it could bulge out of it."""
-    for j in range(domain.moving.shape[0]):
-        i = domain.moving[j]
-        x = block.x[i, lane]
-        new = block.new[i, lane]
-        slopes = abs(block.k[0, i, lane]) + abs(block.k[STAGES - 1, i, lane])
-        bulge = 0.5 * abs(block.h[lane]) * slopes
-        if min(x, new) - bulge < domain.lows[i] or max(x, new) + bulge > domain.highs[i]:
+    for j in range(moving.shape[0]):
+        i = moving[j]
+        x, new = w[at.x + i, lane], w[at.new + i, lane]
+        last = at.k + (STAGES - 1) * at.n
+        slopes = abs(w[at.k + i, lane]) + abs(w[last + i, lane])
+        bulge = 0.5 * abs(w[at.h, lane]) * slopes
+        if min(x, new) - bulge < domain[0, i] or max(x, new) + bulge > domain[1, i]:
             return True
     return False
 
 
 @part
 def _give_samples(
-    block: Block,
-    pace: Pace,
-    task: Task,
-    lane: int,
-    theta: float,
-    results: Results,
+    w: Array, at: Places, pace: Integers, times: Array, theta: float, lane: int, states: Array
 ) -> None:
     """The samples up to theta of the step."""
-    b = pace.trajectory[lane]
-    while pace.sample[lane] < task.times.shape[0]:
-        place = (task.times[pace.sample[lane]] - block.t[lane]) / block.h[lane]
+    b = pace[TRAJECTORY, lane]
+    while pace[SAMPLE, lane] < times.shape[0]:
+        sample = pace[SAMPLE, lane]
+        place = (times[sample] - w[at.t, lane]) / w[at.h, lane]
         if place > theta:
             return
-        for i in range(block.x.shape[0]):
-            exact = block.new[i, lane] if place == 1.0 else point(block.dense, i, place)
-            results.states[b, pace.sample[lane], i] = exact
-        pace.sample[lane] += 1
+        for i in range(at.n):
+            exact = w[at.new + i, lane]
+            states[b, sample, i] = (
+                exact if place == 1.0 else point(w, at.dense + 5 * i, lane, place)
+            )
+        pace[SAMPLE, lane] = sample + 1

@@ -15,7 +15,7 @@ import numpy as np
 from numba import carray, types
 
 from runtime.arrays import Array
-from runtime.kernels.cache import compiled_for_c, kernel, part
+from runtime.kernels.cache import compiled_for_c, inlined, kernel, part
 from runtime.kernels.interpolate import lookup_lanes
 from runtime.kernels.tape import (
     ABS,
@@ -61,20 +61,21 @@ from runtime.kernels.tape import (
     WRAP,
     Tape,
 )
-from runtime.kernels.vectors import call
+from runtime.kernels.vectors import call, stack_memory
 
+ARGUMENTS: Final = MOST_AXES * LANES
 PI: Final = math.pi
 TURN: Final = 2.0 * math.pi
 
 
-@part
-def run(tape: Tape, rows: Array, points: Array, lanes: int) -> None:
-    """Run every instruction; `points` (MOST_AXES, LANES) is scratch for the tables' arguments."""
+@inlined
+def run(tape: Tape, rows: Array, lanes: int) -> None:
+    """Run every instruction on the first `lanes` lanes; rows has at least `tape.rows` rows."""
     code = tape.instructions, tape.instructions.shape[0]
     tables = tape.shapes, tape.axes, tape.counts, tape.periodic, tape.lows, tape.inverse_steps
     call(
         tape.machine,
-        (*code, rows, tape.rows, points, lanes, *tables, tape.coefficients, tape.lookup),
+        (*code, rows, tape.rows, lanes, *tables, tape.coefficients, tape.lookup),
     )
 
 
@@ -83,7 +84,7 @@ def machine_address() -> int:
     """Where the machine's own machine code is; compiled on the first call."""
     numbers, integers = types.CPointer(types.float64), types.CPointer(types.int64)
     flags, i = types.CPointer(types.uint8), types.int64
-    code, work = (integers, i), (numbers, i, numbers, i)
+    code, work = (integers, i), (numbers, i, i)
     tables = (integers, integers, integers, flags, numbers, numbers)
     return compiled_for_c(_machine, types.void(*code, *work, *tables, numbers, i))
 
@@ -93,7 +94,6 @@ def _machine(
     count: int,
     rows_: Any,
     size: int,
-    points_: Any,
     lanes: int,
     shapes: Any,
     axes: Any,
@@ -105,7 +105,7 @@ def _machine(
     lookup: int,
 ) -> None:
     rows = carray(rows_, (size, LANES))
-    points = carray(points_, (MOST_AXES, LANES))
+    points = carray(stack_memory(ARGUMENTS), (MOST_AXES, LANES))
     instructions = carray(instructions_, (count, 5))
     for k in range(count):
         op = instructions[k, 0]
@@ -322,14 +322,13 @@ def fill_literals(tape: Tape, rows: Array) -> None:
 def evaluate_points(tape: Tape, register: Array, out: Array) -> None:
     """Fill `out` (N, q) with the results at the points `register` (N, r)."""
     rows = np.zeros((tape.rows, LANES))
-    points = np.zeros((MOST_AXES, LANES))
     fill_literals(tape, rows)
     for first in range(0, register.shape[0], LANES):
         lanes = min(LANES, register.shape[0] - first)
         for lane in range(lanes):
             for i in range(tape.entries):
                 rows[i, lane] = register[first + lane, i]
-        run(tape, rows, points, lanes)
+        run(tape, rows, lanes)
         for lane in range(lanes):
             for j in range(tape.results.shape[0]):
                 out[first + lane, j] = rows[tape.results[j], lane]
