@@ -116,7 +116,7 @@ def _bind(program: Program, log: LogFile, binding: Binding) -> Bound | Diagnosti
 def _bind_column(program: Program, sheet: Sheet, binding: Binding) -> Bound | Diagnostic:
     name = parse_column(binding.path)
     if name in sheet.columns:
-        return Bound(binding, sheet.source, name, None)
+        return Bound(binding, sheet.name, name, None)
     message = f"the file has no column '{name}'"
     help_text = nearest_help(name, tuple(sheet.columns), "columns")
     return binding_diagnostic(program, binding, "V303", message, help=help_text)

@@ -57,9 +57,9 @@ def gap_notes(topic: str, times: Integers) -> list[str]:
     if not long.any():
         return []
     widest = int(np.argmax(steps))
-    after = float(times[widest] - times[0]) * 1e-9
+    after = float(times[widest] - times[0]) / 1e9
     gaps = "1 gap" if np.count_nonzero(long) == 1 else f"{np.count_nonzero(long)} gaps"
-    return [f"{topic}: {gaps}, the largest {steps[widest] * 1e-9:.3g} s after {after:.4g} s"]
+    return [f"{topic}: {gaps}, the largest {steps[widest] / 1e9:.3g} s after {after:.4g} s"]
 
 
 def _one_run(times: Integers) -> Booleans:

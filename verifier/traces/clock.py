@@ -84,13 +84,13 @@ def offset(samples: Samples) -> Offset:
     """How much later than its stamp a message of this topic was logged."""
     assert samples.stamps is not None, "only topics with stamps have an offset"
     given = samples.stamps > 0
-    late = (samples.log_times[given] - samples.stamps[given]).astype(np.float64) * 1e-9
+    late = (samples.log_times[given] - samples.stamps[given]).astype(np.float64) / 1e9
     low, median, high = np.percentile(late, (5.0, 50.0, 95.0))
     return Offset(float(median), float(high - low) / 2.0)
 
 
 def _span(times: Integers) -> float:
-    return float(np.percentile(times, 95) - np.percentile(times, 5)) * 1e-9
+    return float(np.percentile(times, 95) - np.percentile(times, 5)) / 1e9
 
 
 def _apart(topics: Sequence[Samples], offsets: dict[str, Offset]) -> str:

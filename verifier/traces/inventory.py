@@ -1,6 +1,6 @@
 """What a log holds: topics, rates, and the paths of all numbers with what they look like."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
@@ -96,7 +96,7 @@ def inspect(path: Path) -> Inventory:
     return Inventory(
         source=str(path),
         kind=kind,
-        start=float(times.min()) * 1e-9 if times.size else 0.0,
+        start=float(times.min()) / 1e9 if times.size else 0.0,
         duration=_span(times),
         messages=times.size,
         size=_size(path),
@@ -143,7 +143,8 @@ def _sampled(stream: Messages) -> Samples:
     for steps in list_quaternions(root):
         start = path_text(topic, steps)
         paths += [MessagePath(f"{start}.@{name}", topic, steps, name) for name in DERIVED]
-    kept = Messages(stream.channel, stream.times[: len(stream.payloads)], stream.payloads)
+    count = len(stream.payloads)
+    kept = replace(stream, times=stream.times[:count], places=stream.places[:count])
     return sample_topic([kept], paths)
 
 
@@ -187,7 +188,7 @@ def _rate(times: Integers) -> float:
 
 
 def _span(times: Integers) -> float:
-    return float(times.max() - times.min()) * 1e-9 if times.size else 0.0
+    return float(times.max() - times.min()) / 1e9 if times.size else 0.0
 
 
 def _size(path: Path) -> int:

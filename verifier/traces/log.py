@@ -1,6 +1,7 @@
 """What the readers of files hand on: messages as they were written, or a sheet of columns."""
 
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import TypeAlias, final
 
 from runtime.arrays import Integers
@@ -28,12 +29,14 @@ class Channel:
 class Messages:
     """The messages of one channel, in the order of the file.
 
-    times: (count,) log times in nanoseconds, of all messages. payloads: (k,) the first k of them,
-    k <= count; all where the channel was asked for.
+    times: (count,) log times in nanoseconds, of all messages. places: (count,) their places among
+    all messages of the log. payloads: (k,) the first k of them, k <= count; all where the channel
+    was asked for.
     """
 
     channel: Channel
     times: Integers
+    places: Integers
     payloads: tuple[bytes, ...]
 
 
@@ -68,6 +71,11 @@ class Sheet:
     time_column: str
     losses: tuple[Loss, ...]
     notes: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The file's name, which stands for a topic."""
+        return PurePath(self.source).name
 
 
 LogFile: TypeAlias = MessageLog | Sheet

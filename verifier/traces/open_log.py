@@ -1,13 +1,14 @@
 """A log of any kind, told by its first bytes and not by its name."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from verifier.traces.bag1_file import is_bag1, read_bag1
 from verifier.traces.bag2_file import is_sqlite, read_bag2
 from verifier.traces.csv_file import is_csv, read_csv
 from verifier.traces.faults import file_fault
-from verifier.traces.log import LogFile, MessageLog, Wanted
+from verifier.traces.log import LogFile, MessageLog, Messages, Wanted
 from verifier.traces.mcap_file import find_attachment, is_mcap, read_mcap
 from verifier.traces.trace import Loss
 
@@ -75,10 +76,14 @@ def _read_folder(path: Path, wanted: Wanted) -> LogFile:
 
 
 def _joined(path: Path, logs: Sequence[MessageLog]) -> MessageLog:
+    streams: list[Messages] = []
+    for log in logs:
+        before = sum(stream.times.size for stream in streams)
+        streams += [replace(stream, places=stream.places + before) for stream in log.streams]
     return MessageLog(
         source=str(path),
         kind=f"folder of {logs[0].kind}",
-        streams=tuple(stream for log in logs for stream in log.streams),
+        streams=tuple(streams),
         losses=tuple(
             Loss(loss.cause, loss.count, f"{Path(log.source).name}: {loss.detail}")
             for log in logs

@@ -46,7 +46,7 @@ def read_trace(path: Path, program: Program, clock: ClockWish = "auto") -> Trace
         source=str(path),
         series={reading.bound.binding.name: _series(reading, start) for reading in readings},
         constants={b.name: b.constant for b in program.bindings if b.constant is not None},
-        start=start * 1e-9,
+        start=start / 1e9,
         losses=_losses(log, topics, runs, readings),
         notes=_notes(log, topics, runs, readings, clocks.notes),
     )
@@ -78,7 +78,7 @@ class _Reading:
 def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str, Samples]:
     """The samples of each bound topic; raises SpecError with the faults of all of them."""
     if isinstance(log, Sheet):
-        return {log.source: sample_sheet(log, sorted({b.column for b in bound}))} if bound else {}
+        return {log.name: sample_sheet(log, sorted({b.column for b in bound}))} if bound else {}
     problems: list[Diagnostic] = []
     topics: dict[str, Samples] = {}
     for topic in dict.fromkeys(one.topic for one in bound):
@@ -183,7 +183,7 @@ def _measured(
 
 def _series(reading: _Reading, start: int) -> Series:
     binding = reading.bound.binding
-    times = (reading.times - start).astype(np.float64) * 1e-9
+    times = (reading.times - start).astype(np.float64) / 1e9
     clock = str(reading.clock)
     return Series(binding.name, frozen(times), frozen(reading.values), binding.path, clock)
 
@@ -227,12 +227,12 @@ def _notes(
 
 
 def _zero_note(samples: Samples) -> list[str]:
-    """Messages in which all the numbers that are read are zero: often no measurement at all."""
-    columns = [one.numbers for one in samples.columns.values() if one.texts is None]
+    """Samples in which all the numbers that are read are zero: often no measurement at all."""
+    columns = [c.numbers for c in samples.columns.values() if np.isfinite(c.numbers).any()]
     if len(columns) < 2:
         return []
     zero = int(np.all(np.stack(columns) == 0.0, axis=0).sum())
     whole = columns[0].size
     if not zero:
         return []
-    return [f"{samples.topic}: in {zero} of {whole} messages everything that is read is zero"]
+    return [f"{samples.topic}: in {zero} of {whole} samples everything that is read is zero"]

@@ -47,26 +47,30 @@ def sample_topic(streams: Sequence[Messages], paths: Sequence[MessagePath]) -> S
     """The samples of all channels of one topic; raises FieldError."""
     parts = [_sample_stream(stream, paths) for stream in streams]
     if len(parts) == 1:
-        return parts[0]
-    stamps = [part.stamps for part in parts]
+        return parts[0][0]
+    samples = [part for part, _ in parts]
+    rows = np.argsort(np.concatenate([places for _, places in parts]))
+    stamps = [part.stamps for part in samples if part.stamps is not None]
     return Samples(
-        topic=parts[0].topic,
-        log_times=np.concatenate([part.log_times for part in parts]),
-        stamps=None
-        if any(s is None for s in stamps)
-        else np.concatenate([s for s in stamps if s is not None]),
-        columns={path.text: _joined([part.columns[path.text] for part in parts]) for path in paths},
-        losses=tuple(loss for part in parts for loss in part.losses),
+        topic=samples[0].topic,
+        log_times=np.concatenate([part.log_times for part in samples])[rows],
+        stamps=np.concatenate(stamps)[rows] if len(stamps) == len(samples) else None,
+        columns={
+            path.text: _joined([part.columns[path.text] for part in samples]).rows(rows)
+            for path in paths
+        },
+        losses=tuple(loss for part in samples for loss in part.losses),
     )
 
 
 def sample_sheet(sheet: Sheet, names: Sequence[str]) -> Samples:
     """The named columns of a CSV file, which has no stamps beside its time column."""
     columns = {name: _numeric(sheet.columns[name]) for name in names}
-    return Samples(sheet.source, sheet.times, None, columns, ())
+    return Samples(sheet.name, sheet.times, None, columns, ())
 
 
-def _sample_stream(stream: Messages, paths: Sequence[MessagePath]) -> Samples:
+def _sample_stream(stream: Messages, paths: Sequence[MessagePath]) -> tuple[Samples, Integers]:
+    """The samples of one channel, and their places in the log."""
     root = shape(stream)
     for path in paths:
         check(root, path)
@@ -81,13 +85,14 @@ def _sample_stream(stream: Messages, paths: Sequence[MessagePath]) -> Samples:
     losses = []
     if bad := int((~kept).sum()):
         losses.append(Loss("unreadable messages", bad, f"{stream.channel.topic}: {decoded.reason}"))
-    return Samples(
+    samples = Samples(
         topic=stream.channel.topic,
         log_times=stream.times[kept],
         stamps=_stamps(found[stamp.seconds], found[stamp.nanoseconds]) if stamp else None,
         columns={path.text: _value(path, found) for path in paths},
         losses=tuple(losses),
     )
+    return samples, stream.places[kept]
 
 
 def _decode(stream: Messages, root: Struct, asked: Sequence[Steps]) -> Decoded:

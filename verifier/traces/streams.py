@@ -24,15 +24,12 @@ class Gathering(Generic[Key]):
         self._wanted = wanted
         self._channels: dict[Key, Channel] = {}
         self._times: dict[Key, list[int]] = {}
+        self._places: dict[Key, list[int]] = {}
+        self.count = 0
         self._payloads: dict[Key, list[bytes]] = {}
         self._room: dict[Key, int] = {}
         self._losses: dict[tuple[str, str], int] = {}
         self.notes: list[str] = []
-
-    @property
-    def count(self) -> int:
-        """Messages so far."""
-        return sum(map(len, self._times.values()))
 
     def declare(self, key: Key, channel: Channel) -> None:
         """A channel; declaring it again changes nothing but its description."""
@@ -43,6 +40,8 @@ class Gathering(Generic[Key]):
     def add(self, key: Key, log_time: int, payload: bytes) -> None:
         """A message at `log_time` nanoseconds."""
         self._times.setdefault(key, []).append(log_time)
+        self._places.setdefault(key, []).append(self.count)
+        self.count += 1
         room = self._room.get(key, UNBOUNDED)
         if room > 0:
             self._payloads.setdefault(key, []).append(payload)
@@ -63,6 +62,7 @@ class Gathering(Generic[Key]):
             Messages(
                 channel,
                 np.array(self._times.get(key, []), dtype=np.uint64).astype(np.int64),
+                np.array(self._places.get(key, []), dtype=np.int64),
                 tuple(self._payloads.get(key, ())) if self._wanted.has(channel.topic) else (),
             )
             for key, channel in self._channels.items()

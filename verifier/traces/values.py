@@ -92,9 +92,10 @@ def _indices(binding: Binding, meaning: Meaning, texts: tuple[str | None, ...]) 
 
 
 def _not_numbers(binding: Binding, values: tuple[str, ...], texts: list[str]) -> NotNumbersError:
-    shown = ", ".join(repr(text) for text in texts[:6])
+    texts = [text[:40] for text in texts[:6]]
+    shown = ", ".join(map(repr, texts))
     if values:
         message = f"none of the values of {binding.name} stands at this path (it holds {shown})"
         return NotNumbersError(message, f"declared: {', '.join(values)}")
     message = f"{binding.path} holds texts, not numbers ({shown})"
-    return NotNumbersError(message, f"write {{path: ..., values: [{', '.join(texts[:6])}]}}")
+    return NotNumbersError(message, f"write {{path: ..., values: [{', '.join(texts)}]}}")

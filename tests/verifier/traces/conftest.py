@@ -9,6 +9,7 @@ from typing import TypeAlias, final
 import numpy as np
 import pytest
 from mcap.writer import CompressionType, Writer
+from rosbags.rosbag1 import Writer as Writer1
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
@@ -45,7 +46,9 @@ def binding(name: str, path: str, **changes: object) -> Binding:
     return Binding(name=name, path=path, **(values | changes))  # type: ignore[arg-type]  # checked by the tests
 
 
-def state(name: str, kind: Kind = Kind.CONTINUOUS, role: Role = Role.BOTH, **changes: object) -> State:
+def state(
+    name: str, kind: Kind = Kind.CONTINUOUS, role: Role = Role.BOTH, **changes: object
+) -> State:
     values: dict[str, object] = {
         "unit": METRE,
         "low": -np.pi,
@@ -135,7 +138,9 @@ class Workshop:
                 number = 0
                 if note.schema or note.encoding == "json":
                     text = note.schema_text.encode()
-                    number = writer.register_schema(note.schema or "object", note.schema_encoding, text)
+                    number = writer.register_schema(
+                        note.schema or "object", note.schema_encoding, text
+                    )
                 channels[key] = writer.register_channel(note.topic, note.encoding, number)
             time = round(note.time * SECOND)
             writer.add_message(channels[key], time, note.payload, time)
@@ -148,7 +153,15 @@ class Workshop:
         payload = bytes(self.store.serialize_cdr(message, name))
         return Note(topic, time, payload, "cdr", name, "ros2msg", text)
 
-    def odometry(self, stamp: float, x: float = 0.0, y: float = 0.0, yaw: float = 0.0, speed: float = 0.0, frame: str = "odom") -> object:
+    def odometry(
+        self,
+        stamp: float,
+        x: float = 0.0,
+        y: float = 0.0,
+        yaw: float = 0.0,
+        speed: float = 0.0,
+        frame: str = "odom",
+    ) -> object:
         types = self.store.types
         point = types["geometry_msgs/msg/Point"](x=x, y=y, z=0.0)
         quaternion = types["geometry_msgs/msg/Quaternion"](
@@ -170,6 +183,28 @@ class Workshop:
                 covariance=np.zeros(36),
             ),
         )
+
+    def bag1(self, compression: Writer1.CompressionFormat | None = None, count: int = 50) -> Path:
+        """Points stamped every second, logged 5 ms later."""
+        store = get_typestore(Stores.ROS1_NOETIC)
+        kind = store.types["geometry_msgs/msg/PointStamped"]
+        header = store.types["std_msgs/msg/Header"]
+        time = store.types["builtin_interfaces/msg/Time"]
+        point = store.types["geometry_msgs/msg/Point"]
+        writer = Writer1(self.folder / "log.bag")
+        if compression:
+            writer.set_compression(compression)
+        with writer:
+            connection = writer.add_connection("/p", kind.__msgtype__, typestore=store)
+            for i in range(count):
+                stamp = time(sec=10 + i, nanosec=0)
+                message = kind(
+                    header=header(seq=i, stamp=stamp, frame_id="map" * (i % 3)),
+                    point=point(x=float(i), y=0.0, z=0.0),
+                )
+                payload = store.serialize_ros1(message, kind.__msgtype__)
+                writer.write(connection, (10 + i) * SECOND + 5_000_000, payload)
+        return self.folder / "log.bag"
 
     def text(self, content: str | bytes, name: str = "log.csv") -> Path:
         path = self.folder / name

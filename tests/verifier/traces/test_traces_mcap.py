@@ -176,11 +176,15 @@ def test_a_torn_json_row_is_counted(workshop: Any, make: Any) -> None:
 
 
 def test_a_json_channel_without_a_schema_is_read(workshop: Any, make: Any) -> None:
-    path = workshop.mcap([make.said("/a", 0.1 * i, x=float(i)) for i in range(20)], chunk_size=1 << 20)
+    path = workshop.mcap(
+        [make.said("/a", 0.1 * i, x=float(i)) for i in range(20)], chunk_size=1 << 20
+    )
     whole = path.read_bytes()
     begin, end = chunks(whole)[0]
     body = bytearray(whole[begin:end])
-    at = body.find(struct.pack("<BQ", 4, struct.unpack_from("<Q", body, body.find(b"\x04", 40) + 1)[0]))
+    at = body.find(
+        struct.pack("<BQ", 4, struct.unpack_from("<Q", body, body.find(b"\x04", 40) + 1)[0])
+    )
     place = body.find(b"\x02\0\0\0/a") - 2
     assert at >= 0
     body[place : place + 2] = (77).to_bytes(2, "little")
@@ -231,7 +235,8 @@ def test_several_channels_of_one_topic_are_read_together(workshop: Any, make: An
         for i in range(10)
     ]
 
-    trace = workshop.read(workshop.mcap([*first, *other]), x="/a.x")
+    notes = sorted([*first, *other], key=lambda note: note.time)
+    trace = workshop.read(workshop.mcap(notes), x="/a.x")
 
     assert values(trace) == list(range(20))
 

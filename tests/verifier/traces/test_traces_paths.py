@@ -69,7 +69,9 @@ def test_a_bad_path_is_explained_at_its_place(text: str, at_fault: str, word: st
     assert word in caught.value.message
 
 
-NAMES = st.text(st.characters(blacklist_categories=["Cs"], blacklist_characters='"'), min_size=1, max_size=12)
+NAMES = st.text(
+    st.characters(blacklist_categories=["Cs"], blacklist_characters='"'), min_size=1, max_size=12
+)
 STEPS = st.lists(st.one_of(NAMES, st.integers(-99, 99)), min_size=1, max_size=5)
 
 

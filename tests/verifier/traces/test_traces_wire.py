@@ -11,7 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from verifier.traces.definitions import DefinitionError, Many, Node, Number, Struct, Text, definition
+from verifier.traces.definitions import (
+    DefinitionError,
+    Many,
+    Node,
+    Number,
+    Struct,
+    Text,
+    definition,
+)
 from verifier.traces.json_messages import decode as decode_json
 from verifier.traces.paths import Steps
 from verifier.traces.wire import decode
@@ -45,7 +53,9 @@ def definitions(draw: st.DrawFn) -> tuple[str, str]:
         many = st.sampled_from(["", "", "", "[]", "[3]", "[<=4]"])
         fields = draw(st.lists(st.tuples(kinds, many), min_size=1, max_size=5))
         texts.append("\n".join(f"{kind}{suffix} f{i}" for i, (kind, suffix) in enumerate(fields)))
-    below = "".join(f"\n{LINE}\nMSG: made/{n}\n{t}" for n, t in zip(names[1:], texts[1:], strict=True))
+    below = "".join(
+        f"\n{LINE}\nMSG: made/{n}\n{t}" for n, t in zip(names[1:], texts[1:], strict=True)
+    )
     return f"made/msg/{names[0]}", texts[0] + below
 
 
@@ -111,9 +121,11 @@ def compare(messages: Sequence[Any], leaves: Sequence[Steps], decoded: Any) -> N
                 assert column.numbers[row] == np.float64(expected)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(described=definitions(), seed=st.integers(0, 2**32 - 1))
-def test_any_message_type_is_read_as_rosbags_wrote_it(described: tuple[str, str], seed: int) -> None:
+def test_any_message_type_is_read_as_rosbags_wrote_it(
+    described: tuple[str, str], seed: int
+) -> None:
     name, text = described
     store = get_typestore(Stores.EMPTY)
     store.register(get_types_from_msg(text, name))
@@ -157,7 +169,9 @@ def test_more_layouts_of_one_size_than_are_compared_are_still_read() -> None:
 
     payloads = [bytes(store.serialize_cdr(one, "a/msg/B")) for one in messages]
 
-    assert decode(payloads, "cdr", root, [("x",)]).columns[0].numbers.tolist() == list(range(len(splits)))
+    assert decode(payloads, "cdr", root, [("x",)]).columns[0].numbers.tolist() == list(
+        range(len(splits))
+    )
 
 
 @pytest.mark.parametrize("length", [0, 3, 4, 20, 100])
