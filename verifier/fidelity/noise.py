@@ -9,8 +9,18 @@ Two estimates, and the lower one counts, because each can only be too high:
   samples counts as noise.
 
 Outliers are clipped at four robust deviations. A quantised sensor has at least the noise of its
-rounding, quantum / sqrt(12). Too low an estimate of noise makes the verdict stricter, never laxer.
+rounding, quantum / sqrt(12).
+
+Successive values of the noise need not be independent. Second differences see the correlation p of
+an AR(1) process: they have variance sigma^2 (6 - 8p + 2p^2) and lag-one correlation
+(-4 + 7p - 4p^2 + p^3) / (6 - 8p + 2p^2), which rises from -2/3 for white noise to -1/2 for p = 1.
+Where p is clearly negative (jitter of stamps makes it so), sigma is less than white noise would
+have to be, and averages are calmer still; both are taken into account. Where p is positive, noise
+and slow drift look alike, and only the white part is called noise. So the noise that is removed
+from a departure is rather too little than too much: the verdict gets stricter, never laxer.
 """
+
+import math
 
 import numpy as np
 
@@ -27,6 +37,8 @@ LATTICE = 0.05
 """How far from a multiple of the quantum, as a share of it, a quantised value may be."""
 FEW = 12
 """With fewer residuals no noise is estimated."""
+CLEAR = 4.4
+"""Two standard errors of the correlation are this over the square root of the samples."""
 LONGEST = 3.0
 """Samples further apart than so many median distances are not successive."""
 
@@ -74,7 +86,29 @@ def _noise(times: Array, values: Array, turn: float, together: Booleans, errors:
     if quantum / np.sqrt(12.0) > sigma:
         sigma, method = quantum / np.sqrt(12.0), "the step of the quantised sensor"
     count = max(len(residuals), len(smooth))
-    return Noise(sigma, count, _correlation(residuals), quantum, method)
+    correlation = _correlation(residuals)
+    sigma *= float(np.sqrt(6.0 / _second_difference(_negative(correlation, count))))
+    return Noise(sigma, count, correlation, quantum, method)
+
+
+def averaged(noise: Noise, count: Array) -> Array:
+    """The variance of the mean of `count` successive samples.
+
+    For AR(1) noise sigma^2 / m (1 + 2 sum_k (1 - k / m) p^k), with p as far as clearly negative.
+    """
+    m = np.maximum(count, 1.0)
+    p = _negative(noise.correlation, noise.samples)
+    series = p / (1.0 - p) - p * (1.0 - p**m) / (m * (1.0 - p) ** 2)
+    return np.asarray(noise.sigma**2 / m * (1.0 + 2.0 * series))
+
+
+def _negative(correlation: float, count: int) -> float:
+    return min(0.0, correlation + CLEAR / math.sqrt(max(count, 1)))
+
+
+def _second_difference(p: float) -> float:
+    """The variance of second differences of AR(1) noise of variance 1."""
+    return 6.0 - 8.0 * p + 2.0 * p**2
 
 
 def _unwound(values: Array, turn: float) -> Array:
@@ -127,11 +161,7 @@ def quantum_of(values: Array) -> float:
 
 
 def _correlation(residuals: Array) -> float:
-    """Of successive values of the noise, as that of an AR(1) process.
-
-    Its second differences have lag-one correlation (-4 + 7p - 4p^2 + p^3) / (6 - 8p + 2p^2), which
-    rises from -2/3 for white noise (p = 0) to -1/2 (p = 1).
-    """
+    """Of successive values of the noise, from the lag-one correlation of its second differences."""
     if len(residuals) < FEW or not np.any(residuals):
         return 0.0
     limit = CLIP * _deviation(residuals)

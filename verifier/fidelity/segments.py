@@ -51,11 +51,15 @@ def segments_of(program: Program, needs: Needs, horizon: float) -> Segments:
 
 def _causes(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
     """Each cause of exclusion with the spans (k, 2) that it leaves."""
-    states = [(f"a gap in {s.name}", _covered(s, 0.0)) for s in needs.series]
     told = [s for s in (each.series for each in (*needs.inputs, *needs.signals)) if s is not None]
-    held_on = [(f"a gap in {s.name}", _covered(s, period_of(s.times))) for s in told]
+    held_on = [(series, period_of(series.times)) for series in told]
+    covered = [
+        each
+        for series, hold in [*((series, 0.0) for series in needs.series), *held_on]
+        for each in _covered(series, hold)
+    ]
     judged = [("judge_when is false", _judged(program, needs, whole))]
-    return [*states, *held_on, *judged, *_domains(program, needs, whole)]
+    return [*covered, *judged, *_domains(program, needs, whole)]
 
 
 def _exclusion(cause: str, before: Array, after: Array, base: Array) -> list[Exclusion]:
@@ -64,16 +68,18 @@ def _exclusion(cause: str, before: Array, after: Array, base: Array) -> list[Exc
     return [Exclusion(cause, seconds, samples)] if samples > 0 or seconds > EDGE else []
 
 
-def _covered(series: Series, hold: float) -> Array:
-    """Where a series has samples without a gap; its last one holds for `hold` seconds more."""
+def _covered(series: Series, hold: float) -> list[tuple[str, Array]]:
+    """From the first to the last sample, which holds for `hold` seconds more; and without gaps."""
     times = series.times
     if len(times) == 1:
-        return spans_of([(float(times[0]), np.inf)])
-    longest = max(GAP_PERIODS * period_of(times), GAP_SECONDS)
-    cuts = np.flatnonzero(np.diff(times) > longest)
-    starts = times[np.concatenate([[0], cuts + 1])]
-    ends = times[np.concatenate([cuts, [len(times) - 1]])]
-    return np.column_stack([starts, ends + hold])
+        return [(f"{series.name} has not begun", spans_of([(float(times[0]), np.inf)]))]
+    whole = spans_of([(float(times[0]), float(times[-1]) + hold)])
+    long = np.diff(times) > max(GAP_PERIODS * period_of(times), GAP_SECONDS)
+    gaps = np.column_stack([times[:-1][long], times[1:][long]])
+    return [
+        (f"{series.name} has not begun, or has ended", whole),
+        (f"a gap in {series.name}", without(whole, gaps)),
+    ]
 
 
 def _judged(program: Program, needs: Needs, whole: Array) -> Array:

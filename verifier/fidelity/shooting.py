@@ -6,7 +6,7 @@ differences). Its covariance is carried to the horizon, so the noise's share of 
 known: e = mean(n) - Phi (estimate - truth), hence var e = sigma^2 / m + Phi P Phi'.
 
 Letters: W windows, n states, D predicted states, m samples in a span, Phi (D, D) the sensitivity
-to the start, P (D, D) the covariance of the start estimate, sigma (D,) the noise.
+to the start, P (D, D) the covariance of the start estimate.
 """
 
 from dataclasses import dataclass
@@ -15,10 +15,12 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
+from verifier.fidelity.noise import averaged
 from verifier.fidelity.plan import Plan
 from verifier.fidelity.prediction import chunks, predict
 from verifier.fidelity.samples import Samples, edges, measured_states, turned
 from verifier.fidelity.windows import Chosen, chosen_samples, closest
+from verifier.report.report import Noise
 
 NUDGE = 1e-5
 """The difference for sensitivities, as a share of the domain."""
@@ -67,11 +69,11 @@ class Fit:
     covariance: Array
 
 
-def shoot(plan: Plan, sigma: Array) -> Shots:
+def shoot(plan: Plan, noise: tuple[Noise, ...]) -> Shots:
     """The errors of all windows at each horizon."""
     windows = plan.windows
     parts = [
-        _shoot(plan.part(part), sigma)
+        _shoot(plan.part(part), noise)
         for part in chunks(plan.model, windows.first, windows.last, len(plan.samples) + 1)
     ]
     errors = tuple(
@@ -91,18 +93,18 @@ def _joined(parts: list[Errors]) -> Errors:
     )
 
 
-def _shoot(plan: Plan, sigma: Array) -> Shots:
-    fit = _fitted(plan, sigma)
+def _shoot(plan: Plan, noise: tuple[Noise, ...]) -> Shots:
+    fit = _fitted(plan, noise)
     paths = _perturbed(plan, fit.start, plan.windows.last)
     is_lost = ~np.all(np.isfinite(paths), axis=(0, 2, 3))
     errors = tuple(
-        tuple(_errors(plan, paths, fit, sigma, (j, h)) for j in range(len(plan.samples)))
+        tuple(_errors(plan, paths, fit, noise, (j, h)) for j in range(len(plan.samples)))
         for h in plan.horizons
     )
     return Shots(fit.start, is_lost, errors)
 
 
-def _fitted(plan: Plan, sigma: Array) -> Fit:
+def _fitted(plan: Plan, noise: tuple[Noise, ...]) -> Fit:
     """The start states that fit the samples around the start best."""
     around = tuple(chosen_samples(each, plan.windows, 0.0) for each in plan.samples)
     knots = [np.max(s.knots[c.index], axis=1) for s, c in zip(plan.samples, around, strict=True)]
@@ -111,18 +113,19 @@ def _fitted(plan: Plan, sigma: Array) -> Fit:
     fit = Fit(start, np.empty(0))
     for _ in range(FITS):
         paths = _perturbed(plan, fit.start, end)
-        fit = _improved(plan, paths, around, fit.start, sigma)
+        fit = _improved(plan, paths, around, fit.start, noise)
     return fit
 
 
 def _improved(
-    plan: Plan, paths: Array, around: tuple[Chosen, ...], start: Array, sigma: Array
+    plan: Plan, paths: Array, around: tuple[Chosen, ...], start: Array, noise: tuple[Noise, ...]
 ) -> Fit:
     """One Gauss-Newton step from `start`."""
     widths = _widths(plan.samples)
     normal = np.tile(np.diag((PRIOR * widths) ** -2.0), (len(start), 1, 1))
     gradient = np.zeros((len(start), len(plan.samples)))
-    weights = np.maximum(sigma, FLOOR * widths) ** -2.0
+    deviation = [_deviation(n, chosen) for n, chosen in zip(noise, around, strict=True)]
+    weights = np.maximum(deviation, FLOOR * widths) ** -2.0
     for j, (each, chosen) in enumerate(zip(plan.samples, around, strict=True)):
         at = _at(plan, paths, chosen, j)
         slope = np.where(chosen.used, np.nan_to_num(at[1:]), 0.0)
@@ -135,6 +138,12 @@ def _improved(
     for j, each in enumerate(plan.samples):
         moved[:, each.column] = np.clip(moved[:, each.column] + step[:, j], *edges(each))
     return Fit(moved, covariance)
+
+
+def _deviation(noise: Noise, chosen: Chosen) -> float:
+    """The noise that as many independent samples as are chosen would need for the same mean."""
+    count = np.atleast_1d(np.median(chosen.used.sum(axis=1)))
+    return float(np.sqrt(averaged(noise, count)[0] * count[0]))
 
 
 def _perturbed(plan: Plan, start: Array, last: Integers) -> Array:
@@ -174,7 +183,9 @@ def _residuals(predicted: Array, samples: Samples, chosen: Chosen) -> Array:
     return np.where(chosen.used, difference, 0.0)
 
 
-def _errors(plan: Plan, paths: Array, fit: Fit, sigma: Array, which: tuple[int, float]) -> Errors:
+def _errors(
+    plan: Plan, paths: Array, fit: Fit, noise: tuple[Noise, ...], which: tuple[int, float]
+) -> Errors:
     """The errors of variable j after a horizon, `which` = (j, horizon)."""
     j, horizon = which
     chosen = chosen_samples(plan.samples[j], plan.windows, horizon)
@@ -190,6 +201,6 @@ def _errors(plan: Plan, paths: Array, fit: Fit, sigma: Array, which: tuple[int, 
     return Errors(
         plain=residual[rows, one] + absent,
         mean=np.sum(residual * share, axis=1) + absent,
-        variance=sigma[j] ** 2 / count + of_start + absent,
+        variance=averaged(noise[j], count) + of_start + absent,
         moved=at[0][rows, one] - paths[0, :, 0, j] + absent,
     )

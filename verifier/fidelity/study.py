@@ -56,7 +56,7 @@ def study_of(
         grid, step_error = accurate_grid(plan, fidelity)
         plan = _plan(Model(flow, grid), needs, segments, horizon)
     noise = noise_of(plan.model, plan.samples, segments.spans)
-    shots = shoot(plan, np.array([each.sigma for each in noise]))
+    shots = shoot(plan, noise)
     return Study(plan, segments, noise, with_input_noise(plan, shots, rng), step_error)
 
 
