@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self, TypeAlias, final
 
-from pydantic import Field, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from spec_schema.field_forms import FieldSpec
 from spec_schema.mistake import Mistake, refuse
@@ -24,12 +24,16 @@ from spec_schema.value_types import (
 from spec_schema.variables import ConstantSpec, ControlSpec, OutputSpec, StateSpec
 
 NodeCount: TypeAlias = Annotated[int, Field(ge=2, le=100_000)]
-Share: TypeAlias = Annotated[Number, Field(gt=0, le=1)]
+Share: TypeAlias = Annotated[
+    Number,
+    Field(gt=0, le=1),
+    WithJsonSchema({"type": "number", "exclusiveMinimum": 0, "maximum": 1}),
+]
 
 
 @final
 class TableSpec(StrictModel):
-    """How the field is tabulated."""
+    """How exactly the field is tabulated, with which nodes, in how much memory."""
 
     tolerance: Mapping[Name, Quantity] = Field(
         default={},
@@ -66,7 +70,7 @@ class TableSpec(StrictModel):
 
 @final
 class Feasibility(StrictModel):
-    """What is known of whether a real robot can do this."""
+    """A claim that a robot can do this, and what shows it."""
 
     level: Literal["demonstrated", "plausible", "hypothetical"] = Field(
         description="Whether a robot has done it, could, or nobody knows.", examples=["plausible"]
@@ -93,7 +97,7 @@ class Feasibility(StrictModel):
 
 @final
 class Fidelity(StrictModel):
-    """What "the robot does this" means, in the user's units."""
+    """When a recording shows the behavior: how close, how far ahead, where."""
 
     tolerance: Annotated[Mapping[Name, Quantity], Field(min_length=1)] = Field(
         description="How far the robot may be from the prediction at the horizon, for each driven "

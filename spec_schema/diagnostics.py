@@ -1,12 +1,15 @@
 """What is wrong, where, by which rule, and what to write instead: data first, text last."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import final
 from unicodedata import combining, east_asian_width
 
 from spec_schema.source import Source, Span
+
+MOST = 100
+"""How many diagnostics of one text are listed."""
 
 WIDEST = 100
 """How many characters of a line are shown at most."""
@@ -78,6 +81,16 @@ def in_file_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         return d.source.name, d.span or nowhere, d.code, d.message
 
     return tuple(sorted(set(diagnostics), key=place))
+
+
+def first_ones(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """The first `MOST` in file order; where there are more, a last one says so."""
+    found = in_file_order(diagnostics)
+    if len(found) <= MOST:
+        return found
+    message = "the mistakes from here on are not listed"
+    end = replace(found[MOST], code="S016", message=message, path="", help="", label="")
+    return (*found[:MOST], end)
 
 
 def render(diagnostics: Iterable[Diagnostic]) -> str:

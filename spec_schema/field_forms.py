@@ -51,10 +51,10 @@ class Arrow(StrictModel):
 
 @final
 class Arrows(StrictModel):
-    """Vectors sketched at points; the compiler fills the space between them."""
+    """A sketched field: vectors at points, and how the space between them is filled."""
 
     over: Names = Field(
-        description="The states that the sketch is drawn over: its axes.", examples=[["x", "y"]]
+        description="The variables that the sketch is drawn over: its axes.", examples=[["x", "y"]]
     )
     drives: Names | None = Field(
         default=None,
@@ -306,11 +306,12 @@ class FieldSpec(StrictModel):
 
 def repeated(names: tuple[str, ...], key: str) -> Iterator[Mistake]:
     """The names that stand twice in the list under `key`."""
+    seen: set[str] = set()
     for index, name in enumerate(names):
-        if name in names[:index]:
-            yield Mistake(
-                "S112", f"{quoted(name)} stands twice in '{key}'", "remove one", (key, index)
-            )
+        if name in seen:
+            message = f"{quoted(name)} stands twice in '{key}'"
+            yield Mistake("S112", message, "remove one", (key, index))
+        seen.add(name)
 
 
 def _size(shape: tuple[int, ...]) -> str:

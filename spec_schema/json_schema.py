@@ -33,6 +33,11 @@ class _Generator(GenerateJsonSchema):
             return self.generate_inner(schema["schema"])
         return super().default_schema(schema)
 
+    def dict_schema(self, schema: core_schema.DictSchema) -> dict[str, Any]:
+        """A mapping of names: what is no name is no key."""
+        found = super().dict_schema(schema)
+        return {**found, "additionalProperties": False} if "patternProperties" in found else found
+
     def model_schema(self, schema: core_schema.ModelSchema) -> dict[str, Any]:
         """A mapping, described by its model's docstring."""
         found = super().model_schema(schema)

@@ -5,7 +5,7 @@ from pathlib import Path as FilePath
 from typing import final
 
 from spec_schema.characters import LARGEST, decode, too_large
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError, in_file_order
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError, first_ones
 from spec_schema.kinds import MODELS, AnySpec
 from spec_schema.mistake import Mistake
 from spec_schema.node import Plain, plain
@@ -14,9 +14,6 @@ from spec_schema.shape import check_shape
 from spec_schema.source import Source, Span
 from spec_schema.suggest import did_you_mean, nearest
 from spec_schema.yaml_reader import read
-
-MOST = 100
-"""How many mistakes of one file are listed."""
 
 
 @final
@@ -90,7 +87,7 @@ def load_source(source: Source) -> Loaded:
     data = {name: plain(entry.value) for name, entry in root.entries.items()}
     shape = check_shape(_model_of(data), data)
     if shape.spec is None:
-        raise SpecError(_listed([_diagnostic(places, mistake) for mistake in shape.mistakes]))
+        raise SpecError(first_ones(_diagnostic(places, mistake) for mistake in shape.mistakes))
     return Loaded(source, shape.spec, places)
 
 
@@ -117,18 +114,6 @@ def _span(places: Places, path: Path, within: tuple[int, int] | None, *, key: bo
     if within is not None:
         return places.within(path, *within)
     return places.key(path) if key else places.value(path)
-
-
-def _listed(diagnostics: list[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """The first mistakes in file order, and how many more there are."""
-    found = in_file_order(diagnostics)
-    if len(found) <= MOST:
-        return found
-    message = f"{len(found) - MOST} more mistakes from here on are not listed"
-    return (
-        *found[:MOST],
-        replace(found[MOST], code="S016", message=message, path="", help="", label=""),
-    )
 
 
 def _unreadable(path: FilePath, error: OSError) -> Diagnostic:

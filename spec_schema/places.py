@@ -58,7 +58,7 @@ class Places:
         if offset is None or not 0 <= start <= end <= node.span.end_column - node.span.column:
             return node.span
         line, column = node.span.line, node.span.column + offset
-        return Span(line, column + start, line, column + max(end, start + 1))
+        return Span(line, column + start, line, column + end)
 
     def dotted(self, path: Path) -> str:
         """The path in the notation of the diagnostics."""

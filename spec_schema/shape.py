@@ -6,11 +6,13 @@ is taken for what it was probably meant to be, and the document checked again.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Generic, TypeVar, final
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from spec_schema.diagnostics import MOST
 from spec_schema.explain import empty_value, meant_key, mistakes_of, unknown_key
 from spec_schema.mistake import Mistake
 from spec_schema.node import Plain
@@ -18,6 +20,9 @@ from spec_schema.places import Path
 
 _ROUNDS = 6
 """A round of repair makes the inside of misspelt keys visible: one level of nesting each."""
+
+_ENOUGH = 4 * MOST
+"""More mistakes of a kind are not looked into: a hostile text could hold a hundred thousand."""
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -42,8 +47,7 @@ def check_shape(model: type[Model], data: dict[str, Plain]) -> Shape[Model]:
             unknown = [found["loc"] for found in errors if found["type"] == "extra_forbidden"]
             if not unknown:
                 return Shape(None, repairs.all_mistakes(errors))
-            for path in unknown:
-                repairs.repair(path)
+            repairs.repair(unknown)
         else:
             found = repairs.all_mistakes([])
             return Shape(None if found else spec, found)
@@ -60,8 +64,16 @@ class _Repairs(Generic[Model]):
     mistakes: list[Mistake] = field(default_factory=list)
     written: dict[Path, str] = field(default_factory=dict)
 
-    def repair(self, path: Path) -> None:
-        """Rename the unknown key at `path` to the one that was meant, or take it out."""
+    def repair(self, unknown: list[Path]) -> None:
+        """Rename the unknown keys to those that were meant, or take them out."""
+        for path in unknown[:_ENOUGH]:
+            self._repair(path)
+        for path in unknown[_ENOUGH:]:
+            mapping = _at(self.data, path[:-1])
+            assert isinstance(mapping, dict), "pydantic finds unknown keys in mappings alone"
+            del mapping[str(path[-1])]
+
+    def _repair(self, path: Path) -> None:
         mapping = _at(self.data, path[:-1])
         assert isinstance(mapping, dict), "pydantic finds unknown keys in mappings alone"
         value = mapping.pop(str(path[-1]))
@@ -73,9 +85,14 @@ class _Repairs(Generic[Model]):
 
     def all_mistakes(self, errors: list[ErrorDetails]) -> tuple[Mistake, ...]:
         """The mistakes of all rounds; `errors` are those of the last."""
-        empty = set(_empty_values(self.data, ()))
-        found = [m for error in errors for m in mistakes_of(self.model, error) if m.at not in empty]
-        found.extend(empty_value(self.model, path) for path in empty)
+        empty = dict.fromkeys(_empty_values(self.data, ()))
+        found = [
+            m
+            for error in errors[:_ENOUGH]
+            for m in mistakes_of(self.model, error)
+            if m.at not in empty
+        ]
+        found.extend(empty_value(self.model, path) for path in islice(empty, _ENOUGH))
         return (*self.mistakes, *map(self._as_written, found))
 
     def _as_written(self, mistake: Mistake) -> Mistake:

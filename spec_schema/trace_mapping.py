@@ -63,7 +63,7 @@ class TraceEntry(StrictModel):
     )
     unit: UnitText | None = Field(
         default=None,
-        description="The unit of the logged number; without it, SI for ROS messages: m, rad, s.",
+        description="The unit of the logged number; without it, the SI unit: m, m/s, rad.",
         examples=["deg"],
     )
     values: RawValues | None = Field(

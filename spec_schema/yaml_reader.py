@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, final
 import yaml
 
 from spec_schema.characters import check_characters
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.diagnostics import MOST, Diagnostic, Severity, SpecError, first_ones
 from spec_schema.node import Entry, Listing, Mapping, Node, Scalar
 from spec_schema.places import Path, dotted
 from spec_schema.scalars import resolve
@@ -41,12 +41,12 @@ def read(source: Source) -> Mapping:
     reader = _Reader(source)
     root = reader.document()
     if reader.problems or not isinstance(root, Mapping):
-        raise SpecError(reader.problems)
+        raise SpecError(first_ones(reader.problems))
     return root
 
 
 @final
-class _Stop(Exception):  # noqa: N818  # no error: the text is too deep to go on
+class _Stop(Exception):  # noqa: N818  # no error: there is enough to say
     """The rest of the text isn't looked at."""
 
 
@@ -221,6 +221,8 @@ class _Reader:
         path: Path = (),
         help_: str = "",
     ) -> None:
+        if len(self.problems) > MOST:
+            raise _Stop
         where = dotted(path) if path else ""
         self.problems.append(
             Diagnostic(code, Severity.ERROR, message, self.source, span, where, help_)
