@@ -3,7 +3,6 @@
 m: number of axes; J: Jacobian (m, m) at a point.
 """
 
-from dataclasses import replace
 from itertools import product
 from typing import Final
 
@@ -30,40 +29,22 @@ def find_fixed_points(view: Slice, grid: Grid) -> tuple[tuple[FixedPoint, ...], 
     zeros = find_zeros(view, grid)
     if not len(zeros):
         return (), ()
-    jacobians = jacobians_at(view, zeros)
+    J = jacobians_at(view, zeros)
+    formula = None if view.formula is None else jacobians_at(view, zeros, view.formula)
     singular = _is_singular_near(view, zeros)
-    expected = None if view.formula is None else jacobians_at(view, zeros, view.formula)
     drifts = _drifting(view, zeros, grid)
     rate = _typical_rate(view, grid)
-    points = tuple(
-        replace(
-            _fixed_point(
-                view, zeros[i], jacobians[i], None if expected is None else expected[i], rate
-            ),
-            drifts=drifts[i],
+    points = []
+    for i, at in enumerate(zeros):
+        eigenvalues, vectors = spectrum(J[i])
+        of_formula = None if formula is None else spectrum(formula[i])[0]
+        kind = (
+            PointKind.DEGENERATE
+            if singular[i]
+            else _kind(view, J[i], eigenvalues, of_formula, rate)
         )
-        for i in range(len(zeros))
-    )
-    marked = tuple(
-        replace(point, kind=PointKind.DEGENERATE) if flag else point
-        for point, flag in zip(points, singular, strict=True)
-    )
-    return _thinned(view, marked)
-
-
-def _fixed_point(
-    view: Slice, at: Array, J: Array, formula: Array | None, rate: float
-) -> FixedPoint:
-    eigenvalues, vectors = spectrum(J)
-    of_formula = None if formula is None else spectrum(formula)[0]
-    return FixedPoint(
-        at=frozen(at),
-        kind=_kind(view, J, eigenvalues, of_formula, rate),
-        eigenvalues=eigenvalues,
-        vectors=vectors,
-        formula_eigenvalues=of_formula,
-        drifts=(),
-    )
+        points.append(FixedPoint(frozen(at), kind, eigenvalues, vectors, of_formula, drifts[i]))
+    return _thinned(view, tuple(points))
 
 
 def _kind(

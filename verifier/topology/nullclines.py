@@ -21,6 +21,12 @@ TOUCH: Final = 1e-8
 FLAT: Final = 1e-3
 """What the change of f over one hundredth of the domain must fall below on such a line."""
 
+NEAR: Final = 0.1
+"""Such lines are looked for where |f| is below this."""
+
+ROUNDING: Final = 1e-11
+"""A smaller change of f from node to node is none."""
+
 SHORTEST: Final = 5
 """Fewer points than these make no line where f touches zero."""
 
@@ -69,14 +75,28 @@ def _touching(view: Slice, grid: Grid, j: int) -> tuple[Array, ...]:
     """Lines along which the rate j is zero with its gradient: 0 = x² has no change of sign."""
     scale = float(np.nanmax(np.abs(grid.rates[..., j])))
     f = grid.rates[..., j] / scale
-    found: list[Array] = []
-    for slope in map(np.asarray, np.gradient(f)):
-        for line in zero_lines(grid.nodes, _nudged(slope, 1.0)):
-            size = np.abs(rates_at(view, line)[..., j]) / scale
-            steep = np.abs(jacobians_at(view, line)[..., j, :] * view.width / scale).max(axis=-1)
-            flat = (size <= TOUCH) & (0.01 * steep <= FLAT)
-            found.extend(_runs(line, np.asarray(flat), SHORTEST))
+    lines = [
+        line
+        for slope in map(np.asarray, np.gradient(f))
+        for line in zero_lines(grid.nodes, _slope_near_zero(f, slope))
+        if len(line) >= SHORTEST
+    ]
+    if not lines:
+        return ()
+    points = np.concatenate(lines)
+    size = np.abs(rates_at(view, points)[..., j]) / scale
+    steep = np.abs(jacobians_at(view, points)[..., j, :] * view.width / scale).max(axis=-1)
+    flat = np.asarray((size <= TOUCH) & (0.01 * steep <= FLAT))
+    ends = np.cumsum([len(line) for line in lines])[:-1]
+    pairs = zip(lines, np.split(flat, ends), strict=True)
+    found = [run for line, keep in pairs for run in _runs(line, keep, SHORTEST)]
     return tuple(_new_ones(found, view.width))
+
+
+def _slope_near_zero(f: Array, slope: Array) -> Array:
+    """The slope where f is small; what is only rounding made positive, so that it has no zeros."""
+    near = np.where(np.abs(f) <= NEAR, slope, np.nan)
+    return np.where(np.abs(slope) < ROUNDING, ROUNDING, near)
 
 
 def _runs(line: Array, keep: Booleans, shortest: int) -> list[Array]:

@@ -25,6 +25,9 @@ ARRIVED: Final = 0.02
 RTOL: Final = 1e-8
 """Of the integration, relative to the state; the absolute one is relative to the domain."""
 
+MOST_STEPS: Final = 10_000
+"""A path that needs more steps chatters along a jump of the field: what is shown of it ends."""
+
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
@@ -77,7 +80,8 @@ def _points(follower: Follower, starts: Array, times: Array) -> Array:
     """Points (L, T, m) along the flow, continuous on periodic axes, NaN outside the domain."""
     view = follower.view
     x = states_at(view, starts)
-    found = adaptive(view.flow, x, view.u, times, RTOL, 1e-9 * float(view.width.min()))
+    atol = 1e-9 * float(view.width.min())
+    found = adaptive(view.flow, x, view.u, times, RTOL, atol, MOST_STEPS)
     points = found.states[..., view.columns]
     steps = shortest(view, np.diff(points, axis=1))
     travelled = np.concatenate([np.zeros_like(points[:, :1]), steps.cumsum(axis=1)], axis=1)

@@ -70,7 +70,7 @@ def _trajectories(
     """Orbits of a map, trajectories in a plane; a line shows its own."""
     if view.is_map:
         return find_orbits(view, detail.trajectories)
-    if len(view.axes) == 1:
+    if len(view.axes) == 1 or detail.trajectories == 0:
         return ()
     return find_trajectories(view, grid, points, detail.trajectories)
 
