@@ -7,16 +7,17 @@ references      names used and unused                             3
 lower parts     outputs, fidelity, bindings                       4
 plan            what is to be tabulated                           5
 lower field     tables with measured error bounds                 6
-assemble        the program
+horizon         table errors, carried to the fidelity horizon     7
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias, final
 
 from compiler.check import Checked, check_behavior
-from compiler.lower_field import formula_codes, lower_field, measured, settings_of
+from compiler.horizon import excess
+from compiler.lower_field import Settings, formula_codes, lower_field, measured, settings_of
 from compiler.lower_parts import (
     lower_feasibility,
     lower_judge_when,
@@ -36,6 +37,8 @@ from spec_schema.field_forms import Formula, Step
 from spec_schema.load import Loaded, load
 
 Progress: TypeAlias = Callable[[str, int, int], None]
+
+TIGHTENINGS = 3  # how often the tables are made again, finer, for the fidelity horizon
 
 
 @final
@@ -62,9 +65,12 @@ def compile_loaded(loaded: Loaded, progress: Progress) -> Compiled:
         message = f"a {loaded.spec.kind} is not compiled; a behavior is"
         raise SpecError([loaded.error("S200", ("kind",), message, "name a behavior spec")])
     checked = check_behavior(loaded, loaded.spec)
+    settings = settings_of(checked.spec, checked.declared, checked.findings)
     _stop_at_errors(checked)
-    field = _field(checked, progress)
-    program = measured(_assembled(checked, field))
+    field = _untabulated(checked)
+    program = _assembled(checked, field)
+    if checked.spec.table.keep == "tables":
+        program = _tabulated(checked, program, settings, progress)
     _stop_at_errors(checked)
     warnings = tuple(d for d in checked.findings.diagnostics if d.severity is Severity.WARNING)
     return Compiled(program, warnings)
@@ -75,9 +81,9 @@ def _stop_at_errors(checked: Checked) -> None:
         raise SpecError(checked.findings.diagnostics)
 
 
-def _field(checked: Checked, progress: Progress) -> Field:
-    """The field of a checked spec, tabulated."""
-    spec, declared, findings = checked.spec, checked.declared, checked.findings
+def _untabulated(checked: Checked) -> Field:
+    """The field as far as it is known before anything is tabulated: its form and formula."""
+    spec, findings = checked.spec, checked.findings
     form = spec.field.form
     name = type(form).__name__.lower()
     every = 0.0
@@ -90,22 +96,53 @@ def _field(checked: Checked, progress: Progress) -> Field:
                 f"a step must take some time (got {form.every})",
                 "write `every: 0.1 s`",
             )
-    settings = settings_of(spec, declared, findings)
-    _stop_at_errors(checked)
-    driven = tuple(state.name for state in declared.driven)
+    driven = tuple(state.name for state in checked.declared.driven)
     field = Field(driven, name, every, (), (), (), None, checked.loaded.origin(("field",)))
     if isinstance(form, Formula | Step):
-        field = formula_codes(checked.expressions.rates, field)
+        return formula_codes(checked.expressions.rates, field)
     if spec.table.keep == "code":
-        return _kept_as_code(checked, field)
+        message = f"a field given as {name} has no formula that could be kept as code"
+        findings.error("S246", ("table", "keep"), message, "write `keep: tables`")
+    _stop_at_errors(checked)
+    return field
+
+
+def _tabulated(
+    checked: Checked, program: Program, settings: Settings, progress: Progress
+) -> Program:
+    """The program with tables that are good enough for its own fidelity tolerance."""
+    plan = _plan(checked)
+    for _ in range(TIGHTENINGS):
+        field = _with_tables(checked, program, plan, settings, progress)
+        made = measured(replace(program, field=field))
+        worst = max(excess(made).values(), default=0.0)
+        if worst <= 1.0:
+            return made
+        settings = replace(settings, strictness=2.0 * worst * settings.strictness)
+    checked.findings.error(
+        "S247",
+        ("fidelity", "horizon"),
+        f"carried to the horizon, the tables' error is {worst:.2g} times what it may be: a tenth "
+        "of the fidelity tolerance",
+        "shorten the horizon, declare a smaller `table: tolerance`, or keep the field as code: "
+        "`table: {keep: code}`",
+        key=True,
+    )
+    return made
+
+
+def _with_tables(
+    checked: Checked, program: Program, plan: Plan, settings: Settings, progress: Progress
+) -> Field:
+    field, findings = program.field, checked.findings
     try:
-        tables, terms, bounds = lower_field(_plan(checked), settings, name, declared, progress)
+        tables, terms, bounds = lower_field(plan, settings, field.form, checked.declared, progress)
     except TableError as error:
         findings.error(error.code, _path_of(error, checked), error.message, error.remedy, key=True)
     except ModuleError as error:
         findings.error("S233", ("field", "module", "call"), error.message, error.remedy)
     _stop_at_errors(checked)
-    return Field(driven, name, every, tables, terms, bounds, field.formula, field.origin)
+    return replace(field, tables=tables, terms=terms, bounds=bounds)
 
 
 def _plan(checked: Checked) -> Plan:
@@ -116,13 +153,6 @@ def _plan(checked: Checked) -> Plan:
     _stop_at_errors(checked)
     assert plan is not None, "a plan that can't be made leaves an error"
     return plan
-
-
-def _kept_as_code(checked: Checked, field: Field) -> Field:
-    if field.formula is None:
-        message = f"a field given as {field.form} has no formula that could be kept as code"
-        checked.findings.error("S246", ("table", "keep"), message, "write `keep: tables`")
-    return field
 
 
 def _path_of(error: TableError, checked: Checked) -> tuple[str, ...]:

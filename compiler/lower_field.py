@@ -38,12 +38,17 @@ SPOTS = 40_000  # points that measure the whole field against its formula
 @final
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How the tables shall be: tolerances (m,) of the driven states' rates, in SI."""
+    """How the tables shall be.
+
+    tolerance: (m,) of the driven states' rates, in SI; None where the spec declares none.
+    strictness: what the tolerances that the compiler chose itself are divided by.
+    """
 
     method: Method
     tolerance: tuple[float | None, ...]
     fixed: Mapping[str, int]
     budget: int
+    strictness: float = 1.0
 
 
 def settings_of(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Settings:
@@ -155,7 +160,7 @@ def _tolerances(plan: Plan, settings: Settings, form: str, declared: Declaration
         for use in sheet.uses:
             finite = use.largest if np.isfinite(use.largest) else 1.0
             size[use.component] += finite * largest[use.column]
-    chosen = np.where(size > 0.0, share * size, 1e-12)
+    chosen = np.where(size > 0.0, share * size, 1e-12) / settings.strictness
     given = settings.tolerance
     return np.array([c if g is None else g for c, g in zip(chosen, given, strict=True)])
 
@@ -171,8 +176,8 @@ def _tabulated(
             sheet.over[-1],
             f"the field has a part over {len(sheet.over)} variables ({', '.join(sheet.over)}), and "
             f"a table has at most {MOST_AXES} axes",
-            "split it into factors of which each reads fewer (`gain * f(x)` keeps `gain` out of the "
-            "table), make a control a constant, or keep a formula as code: `table: {keep: code}`",
+            "split it into factors of which each reads fewer (`gain * f(x)` keeps `gain` out of "
+            "the table), make a control a constant, or keep it as code: `table: {keep: code}`",
         )
     ranges = tuple(range_of(n, declared, settings.fixed.get(n)) for n in sheet.over)
     budget = settings.budget // max(1, len(plan.sheets))

@@ -87,7 +87,7 @@ def lower_fidelity(
 def _positive(value: float | str, unit: SpecUnit | None, path: Path, findings: Findings) -> float:
     found = si_value(value, unit, path, findings)
     if found is not None and found <= 0.0:
-        findings.error("S212", path, f"{path[-1]} must be positive (got {value})", "write how much")
+        findings.error("S212", path, f"{path[1]} must be positive (got {value})", "write how much")
     return found or 1.0
 
 

@@ -25,8 +25,8 @@ from runtime.machine import evaluate
 from runtime.program import Kind, Table
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.bounds import bounds
-from spec_schema.expressions.rewrite import names_in
-from spec_schema.expressions.tree import Expr
+from spec_schema.expressions.rewrite import names_in, simplify, substitute
+from spec_schema.expressions.tree import Expr, Number
 from spec_schema.field_forms import Arrows, Grid, Module
 
 
@@ -72,19 +72,21 @@ def plan_formula(rates: Mapping[str, Expr], declared: Declarations) -> Plan:
     """The sheets of a formula (of a step map: of its next values)."""
     box = _box(declared)
     discrete = {name: len(values) for name, values in declared.values.items()}
+    constants: dict[str, Expr] = {c.name: Number(c.value) for c in declared.constants}
     parts: dict[tuple[str, ...], list[Expr]] = {}
     uses: dict[tuple[str, ...], list[Use]] = {}
     for component, state in enumerate(declared.driven):
         for summand in summands(rates[state.name], declared.continuous, discrete):
-            over = tuple(name for name in declared.register if name in names_in(summand.part))
+            part = simplify(substitute(summand.part, constants))
+            over = tuple(v.name for v in declared.variables if v.name in names_in(part))
             columns = parts.setdefault(over, [])
-            if summand.part not in columns:
-                columns.append(summand.part)
+            if part not in columns:
+                columns.append(part)
             low, high = bounds(summand.coefficient, box)
             use = Use(
                 component,
                 code_of(summand.coefficient),
-                columns.index(summand.part),
+                columns.index(part),
                 max(abs(low), abs(high)),
             )
             uses.setdefault(over, []).append(use)

@@ -55,7 +55,7 @@ def _found(call: str, beside: Path) -> Callable[..., object]:
         except Exception as error:
             raise ModuleError(
                 f"{module_name} can't be imported: {type(error).__name__}: {error}",
-                f"it is looked for in {beside} and among the installed packages",
+                "it is looked for beside the spec and among the installed packages",
             ) from error
     function: Callable[..., object] | None = getattr(module, name, None)
     if not callable(function):

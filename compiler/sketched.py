@@ -157,8 +157,10 @@ def _grid_values(
     try:
         data = _read_npy(path) if path.suffix == ".npy" else _read_csv(path, form, drives)
     except (OSError, ValueError) as error:
-        message = f"{form.file} can't be used: {error}"
-        remedy = f"an array with an axis for each of {', '.join(form.over)} and a last one for {', '.join(drives)}"
+        why = error.strerror if isinstance(error, OSError) else error
+        message = f"{form.file} can't be used: {why}"
+        axes = ", ".join(form.over)
+        remedy = f"it needs an axis for each of {axes}, and a last one for {', '.join(drives)}"
         findings.error("S232", (*base, "file"), message, remedy)
         return None
     if data.ndim != len(form.over) + 1 or data.shape[-1] != len(drives):

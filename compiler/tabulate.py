@@ -91,7 +91,7 @@ def tabulate_function(wanted: Wanted) -> Tabulated:
 
 def nodes(axis: Axis) -> Array:
     """The places (n,) of the nodes along an axis."""
-    return axis.low + axis.step * np.arange(axis.count)
+    return axis.low + axis.step * np.arange(axis.count, dtype=np.float64)
 
 
 def table_bytes(axes: tuple[Axis, ...], method: Method, columns: int) -> int:
@@ -138,16 +138,16 @@ def _refined(wanted: Wanted, i: int, rng: np.random.Generator) -> Axis:
     order = 4 if wanted.method is Method.CUBIC else 2
     share = 0.6 / len(wanted.ranges)
     count = _start(span, wanted.method)
-    history: list[tuple[int, float]] = []
+    history: list[_LineError] = []
     while True:
         axis = _axis(span, count)
-        ratio, place = _line_error(wanted, i, axis, lines, rng)
-        history.append((count, ratio))
-        if ratio <= share or span.fixed is not None:
+        found = _line_error(wanted, i, axis, lines, rng)
+        history.append(found)
+        if found.ratio <= share or span.fixed is not None:
             return axis
         if _is_jump(history):
-            raise _jump(span, place)
-        growth = min(4.0, max(1.3, (1.2 * ratio / share) ** (1 / order)))
+            raise _jump(span, found.place)
+        growth = min(4.0, max(1.3, (1.2 * found.ratio / share) ** (1 / order)))
         count = math.ceil((count - 1) * growth) + 1
         if count > MOST_NODES or 8 * count * wanted.tolerance.size > wanted.budget:
             raise _too_fine(wanted, (axis,))
@@ -163,17 +163,32 @@ def _lines(ranges: tuple[Range, ...], rng: np.random.Generator) -> Array:
     return np.where(inner | (rng.random(base.shape) < 0.3), base, face)
 
 
+@final
+@dataclass(frozen=True, slots=True)
+class _LineError:
+    """The largest error / tolerance along an axis over all lines, where, and how widespread.
+
+    spread: the share of the probed places where the error is above a quarter of the largest.
+    """
+
+    count: int
+    ratio: float
+    place: float
+    spread: float
+
+
 def _line_error(
     wanted: Wanted, i: int, axis: Axis, lines: Array, rng: np.random.Generator
-) -> tuple[float, float]:
-    """The largest error / tolerance along axis i over all lines, and where along the axis."""
+) -> _LineError:
     probes = rng.uniform(axis.low, axis.high, min(PROBES, 6 * axis.count))
     at_nodes = _along(wanted.sample, lines, i, nodes(axis))
     line_table = tabulate(at_nodes.reshape(axis.count, -1), (axis,), wanted.method)
     exact = _along(wanted.sample, lines, i, probes)
     error = np.abs(lookup(line_table, probes[:, None]).reshape(exact.shape) - exact)
     ratio = (error / wanted.tolerance).max(axis=(1, 2))
-    return float(ratio.max()), float(probes[ratio.argmax()])
+    largest = float(ratio.max())
+    spread = float(np.mean(ratio > 0.25 * largest))
+    return _LineError(axis.count, largest, float(probes[ratio.argmax()]), spread)
 
 
 def _along(sample: Sampler, lines: Array, i: int, at: Array) -> Array:
@@ -183,11 +198,14 @@ def _along(sample: Sampler, lines: Array, i: int, at: Array) -> Array:
     return sample(points.reshape(-1, lines.shape[1])).reshape(len(at), len(lines), -1)
 
 
-def _is_jump(history: list[tuple[int, float]]) -> bool:
-    """Eight times the nodes have not even halved the error: this is a jump, not a curve."""
-    count, ratio = history[-1]
-    earlier = [r for n, r in history if 8 * n <= count and n >= 16]
-    return bool(earlier) and ratio > 0.5 * min(earlier)
+def _is_jump(history: list[_LineError]) -> bool:
+    """Eight times the nodes have not even halved the error, and it sits in few places.
+
+    Errors everywhere are no jump but waves that the nodes are still too coarse for.
+    """
+    last = history[-1]
+    earlier = [e.ratio for e in history if 8 * e.count <= last.count and e.count >= 16]
+    return bool(earlier) and last.ratio > 0.5 * min(earlier) and last.spread < 0.1
 
 
 def _built(wanted: Wanted, axes: tuple[Axis, ...]) -> Table:
@@ -234,7 +252,8 @@ def _around(points: Array, axes: tuple[Axis, ...], rng: np.random.Generator) -> 
     step = np.array([axis.step for axis in axes])
     cloud = points[:, None] + rng.uniform(-1.0, 1.0, (len(points), 400, len(axes))) * step
     low, high = [a.low for a in axes], [a.high for a in axes]
-    return np.clip(cloud, low, high).reshape(-1, len(axes))
+    inside: Array = np.clip(cloud, low, high).reshape(-1, len(axes))
+    return inside
 
 
 def _widened(
@@ -243,7 +262,7 @@ def _widened(
     """More nodes on the axis along which the lines near the worst point err most."""
     lines = _around(worst[None], axes, rng)[:LINES]
     ratios = [
-        _line_error(wanted, i, axis, lines, rng)[0] if wanted.ranges[i].fixed is None else -1.0
+        _line_error(wanted, i, axis, lines, rng).ratio if wanted.ranges[i].fixed is None else -1.0
         for i, axis in enumerate(axes)
     ]
     i = int(np.argmax(ratios))

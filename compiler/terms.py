@@ -8,7 +8,6 @@ Discrete states are dealt with value by value: [mode = 0] * f0 + [mode = 1] * f1
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import reduce
 from itertools import product
 from typing import final
 
@@ -49,7 +48,10 @@ def _cases(expr: Expr, discrete: Mapping[str, int]) -> Iterator[tuple[Expr, Expr
             name: Number(float(value)) for name, value in zip(read, values, strict=True)
         }
         tests: list[Expr] = [Apply("eq", (Name(name), value)) for name, value in chosen.items()]
-        yield reduce(_times, tests, Number(1.0)), simplify(substitute(expr, chosen))
+        indicator: Expr = Number(1.0)
+        for test in tests:
+            indicator = _times(indicator, test)
+        yield indicator, simplify(substitute(expr, chosen))
 
 
 def _expanded(  # noqa: PLR0911  one return for each operation

@@ -1,0 +1,59 @@
+"""Pass 7: table errors, carried to the fidelity horizon, must not decide a verdict.
+
+The same starts run through the tables and through the field's own formula; where they end must
+differ by less than a tenth of the fidelity tolerance (design, section 4, item 4).
+"""
+
+from typing import Final
+
+import numpy as np
+
+from runtime.arrays import Array
+from runtime.flow import Source, flow_of
+from runtime.integrators import adaptive
+from runtime.program import Fidelity, Kind, Program
+
+STARTS: Final = 128
+SHARE: Final = 0.1
+ACCURACY: Final = 1e-8  # of the integration, relative; far below any tenth of a tolerance
+
+
+def excess(program: Program) -> dict[str, float]:
+    """How many times each judged state departs from a tenth of its tolerance at the horizon.
+
+    Empty where there is nothing to compare: no fidelity, no formula, or no tables; a step map is
+    compared on its nodes alone, since its error does not accumulate within one step.
+    """
+    field, fidelity = program.field, program.fidelity
+    if fidelity is None or field.formula is None or not field.terms or field.is_map:
+        return {}
+    x, u = _starts(program, fidelity)
+    ends = [_ends(program, source, x, u, fidelity.horizon) for source in Source]
+    apart = np.abs(ends[0] - ends[1])
+    found = {}
+    for i, state in enumerate(program.states):
+        if state.name in fidelity.tolerance:
+            largest = np.nanmax(apart[:, i], initial=0.0)
+            found[state.name] = float(largest / (SHARE * fidelity.tolerance[state.name]))
+    return found
+
+
+def _ends(program: Program, source: Source, x: Array, u: Array, horizon: float) -> Array:
+    """Where the starts are at half the horizon and at its end: (2 * STARTS, n), NaN if outside."""
+    times = np.array([0.0, horizon / 2, horizon])
+    run = adaptive(flow_of(program, source), x, u, times, ACCURACY, ACCURACY)
+    return run.states[:, 1:].reshape(-1, x.shape[1])
+
+
+def _starts(program: Program, fidelity: Fidelity) -> tuple[Array, Array]:
+    rng = np.random.default_rng(STARTS)
+    limits = {state.name: (state.low, state.high) for state in program.states}
+    limits.update({control.name: (control.low, control.high) for control in program.controls})
+    limits.update(fidelity.region)
+    x = np.stack([rng.uniform(*limits[s.name], STARTS) for s in program.states], axis=-1)
+    for i, state in enumerate(program.states):
+        if state.kind is Kind.DISCRETE:
+            x[:, i] = np.floor(rng.uniform(0.0, len(state.values), STARTS))
+    controls = [rng.uniform(*limits[c.name], STARTS) for c in program.controls]
+    u = np.stack(controls, axis=-1) if controls else np.zeros((STARTS, 0))
+    return x, u
