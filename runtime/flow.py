@@ -39,8 +39,8 @@ class Flow:
     """A program, packed: register (r,) = states (n), controls (p), constants.
 
     domain: (2, r) lowest and highest value of each entry; for periodic and discrete states and for
-    constants all finite numbers. defaults: (r,). moves: (n,) whether a state has a rate at all. is_map: the tape
-    gives next states, not rates.
+    constants all finite numbers. defaults: (r,). moves: (n,) whether a state has a rate at all.
+    is_map: the tape gives next states, not rates.
     """
 
     program: Program
@@ -168,7 +168,7 @@ def _domain(program: Program) -> Array:
         *(None for _ in program.constants),
     ]
     edges = [edge or (-LARGEST, LARGEST) for edge in limited]
-    return frozen(np.reshape(edges, (-1, 2)).T)
+    return frozen([[low for low, _ in edges], [high for _, high in edges]])
 
 
 def _difference(flow: Flow, x: Array, u: Array, j: int, step: float) -> Array:

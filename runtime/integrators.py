@@ -93,7 +93,7 @@ def fixed_steps(
     return _trajectories(states, ended)
 
 
-def adaptive(  # noqa: PLR0917  # as one writes an initial value problem, then tolerances
+def adaptive(  # as one writes an initial value problem, then tolerances
     flow: Flow,
     x0: Array,
     u: Array,

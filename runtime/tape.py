@@ -62,6 +62,15 @@ def pack(results: Sequence[Code | Sum], names: tuple[str, ...], tables: Sequence
     )
 
 
+def check_code(code: Code, names: tuple[str, ...]) -> None:
+    """Do nothing, if `code` can be run where `names` are known.
+
+    Raises:
+        ValueError: it cannot; the text says why.
+    """
+    _Graph(names).code(code)
+
+
 def _root(graph: "_Graph", result: Code | Sum) -> int:
     match result:
         case Code():

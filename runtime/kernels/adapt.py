@@ -6,7 +6,7 @@ block stays full, and a trajectory's numbers do not depend on the others.
 pace: (5, LANES) per lane its trajectory, its next sample, how many steps were tried, whether its
 first rates are still to be worked out, whether the last step was rejected.
 """
-# ruff: noqa: PLR0917 - kernels take arguments by place
+
 
 import math
 from typing import Final, NamedTuple
@@ -108,22 +108,16 @@ def adapt(
     w = work_space(tape, at)
     pace = np.zeros((5, LANES), dtype=np.int64)
     aim = Aim(times[-1], rtol, most_steps)
-    waiting = 0
-    lanes = 0
+    waiting = start.shape[0]
+    lanes = start.shape[0] - waiting
     while True:
-        lane = 0
-        while lane < LANES:
-            if lane < lanes and w[at.alive, lane] != 0.0:
-                lane += 1
-            elif waiting < start.shape[0]:
-                _take_up(w, at, pace, domain, lane, start, waiting, times, states, ended)
-                waiting += 1
+        for lane in range(LANES):
+            while waiting > 0 and (lane >= lanes or w[at.alive, lane] == 0.0):
+                b = start.shape[0] - waiting
+                _take_up(w, at, pace, domain, lane, start, b, times, states, ended)
+                waiting -= 1
                 lanes = max(lanes, lane + 1)
-            elif lane < lanes:
-                lanes -= 1
-                _move(w, pace, lanes, lane)
-            else:
-                break
+        lanes = _close_ranks(w, at, pace, lanes)
         if lanes == 0:
             return
         _attempt(tape, w, at, pace, moving, atol, aim, lanes, states, ended)
@@ -154,7 +148,7 @@ def _take_up(
     pace[TRIES, lane] = 0
     pace[FRESH, lane] = 1
     pace[REJECTED, lane] = 0
-    variable = outsider(w, 0, domain, domain.shape[1], lane)
+    variable = outsider(w, at.register, domain, domain.shape[1], lane)
     if variable >= 0:
         _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
         note_exit(variable, w[variable, lane], domain, ended, b)
@@ -168,7 +162,7 @@ def _take_up(
 
 @part
 def _stop(
-    w: Array, at: Places, pace: Integers, lane: int, code: int, states: Array, ended: Array
+    w: Array, at: Places, pace: Integers, lane: int, code: float, states: Array, ended: Array
 ) -> None:
     """End a lane where it is now."""
     b = pace[TRAJECTORY, lane]
@@ -177,12 +171,19 @@ def _stop(
 
 
 @part
-def _move(w: Array, pace: Integers, source: int, lane: int) -> None:
-    """Put what lane `source` does into `lane`."""
-    for i in range(w.shape[0]):
-        w[i, lane] = w[i, source]
-    for i in range(pace.shape[0]):
-        pace[i, lane] = pace[i, source]
+def _close_ranks(w: Array, at: Places, pace: Integers, lanes: int) -> int:
+    """Move the living lanes together; how many there are."""
+    living = 0
+    for lane in range(lanes):
+        if w[at.alive, lane] == 0.0:
+            continue
+        if living < lane:
+            for i in range(w.shape[0]):
+                w[i, living] = w[i, lane]
+            for i in range(pace.shape[0]):
+                pace[i, living] = pace[i, lane]
+        living += 1
+    return living
 
 
 @inlined
@@ -211,7 +212,7 @@ def _attempt(
         _set_stage(w, at, moving, stage, lanes)
         run(tape, w, lanes)
         take_rates(tape, w, at.k + stage * at.n, lanes)
-    copy_rows(w, 0, at.new, at.n, lanes)
+    copy_rows(w, at.register, at.new, at.n, lanes)
 
 
 @inlined

@@ -14,7 +14,7 @@ limit it is that of the finite numbers, so that one comparison also finds what i
 ended: (B, 4 + n) per trajectory: code, variable (register entry or -1), side (1 above the domain,
 -1 below, 0), time and state.
 """
-# ruff: noqa: PLR0917 - kernels take arguments by place
+
 
 from typing import Final, NamedTuple
 
@@ -25,7 +25,8 @@ from runtime.kernels.cache import inlined, part
 from runtime.kernels.machine import fill_literals
 from runtime.kernels.tape import LANES, Tape
 
-COMPLETED, LEFT_DOMAIN, DIVERGED, TOO_MANY_STEPS = range(4)
+# Numbers with a point: numba compiles a function anew for every whole constant it is called with.
+COMPLETED, LEFT_DOMAIN, DIVERGED, TOO_MANY_STEPS = 0.0, 1.0, 2.0, 3.0
 STAGES: Final = 7
 LOOKS: Final = 8
 """Places within a step where an excursion out of the domain is looked for."""
@@ -37,12 +38,14 @@ LARGEST: Final = float(np.finfo(np.float64).max)
 class Places(NamedTuple):
     """The first row of each quantity in the work space.
 
-    x, new: states (n rows) before and after a step. k: rates (STAGES times n rows).
+    register: the machine's, from row 0 on. x, new: states (n rows) before and after a step.
+    k: rates (STAGES times n rows).
     dense: the step's polynomial (5 n rows, that of state i from dense + 5 i on).
     t, h: time and step. alive: 1 or 0. error: the last step's.
     """
 
     n: int
+    register: int
     x: int
     new: int
     k: int
@@ -60,7 +63,7 @@ def places_of(tape: Tape) -> Places:
     x = tape.rows
     dense = x + (2 + STAGES) * n
     t = dense + 5 * n
-    return Places(n, x, x + n, x + 2 * n, dense, t, t + 1, t + 2, t + 3)
+    return Places(n, 0, x, x + n, x + 2 * n, dense, t, t + 1, t + 2, t + 3)
 
 
 @inlined
@@ -120,10 +123,10 @@ def are_inside(w: Array, first: int, domain: Array, count: int, alive: int, lane
 @part
 def any_alive(w: Array, at: Places, lanes: int) -> bool:
     """Whether a lane still goes on."""
+    living = 0.0
     for lane in range(lanes):
-        if w[at.alive, lane] != 0.0:
-            return True
-    return False
+        living += w[at.alive, lane]
+    return living > 0.0
 
 
 @part
@@ -139,10 +142,10 @@ def outsider(w: Array, first: int, domain: Array, count: int, lane: int) -> int:
 @part
 def is_finite(w: Array, first: int, count: int, lane: int) -> bool:
     """Whether all of a lane's values are finite."""
+    zero = 0.0
     for i in range(count):
-        if not abs(w[first + i, lane]) <= LARGEST:
-            return False
-    return True
+        zero += w[first + i, lane] * 0.0
+    return zero == 0.0
 
 
 @part
@@ -207,7 +210,7 @@ def first_exit(w: Array, at: Places, lane: int, domain: Array) -> tuple[float, i
 
 
 @part
-def note_end(w: Array, at: Places, lane: int, code: int, ended: Array, b: int) -> None:
+def note_end(w: Array, at: Places, lane: int, code: float, ended: Array, b: int) -> None:
     """A lane ends where it is now: at its t, in its x."""
     w[at.alive, lane] = 0.0
     ended[b, 0] = code

@@ -5,14 +5,13 @@ turns into vector instructions; every lane is computed by the same arithmetic, s
 depend neither on its place in the batch nor on the batch's size. Operations follow IEEE 754:
 nothing raises, 1/0 is inf, sqrt(-1) is NaN.
 """
-# ruff: noqa: C901, PLR0912, PLR0917 - one branch per operation; kernels take arguments by place
+# ruff: noqa: C901, PLR0912 - one branch per operation; kernels take arguments by place
 
 import math
 from functools import cache
 from typing import Any, Final
 
 import numpy as np
-from numba import carray, types
 
 from runtime.arrays import Array
 from runtime.kernels.cache import compiled_for_c, inlined, kernel, part
@@ -61,7 +60,7 @@ from runtime.kernels.tape import (
     WRAP,
     Tape,
 )
-from runtime.kernels.vectors import call, stack_memory
+from runtime.kernels.vectors import call, carray, stack_memory, types
 
 ARGUMENTS: Final = MOST_AXES * LANES
 PI: Final = math.pi

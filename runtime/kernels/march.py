@@ -2,7 +2,7 @@
 
 Every trajectory has its own times; inputs are held during a step. A step of length 0 does nothing.
 """
-# ruff: noqa: PLR0917 - kernels take arguments by place
+
 
 from runtime.arrays import Array, Integers
 from runtime.kernels.blocks import (
@@ -61,7 +61,7 @@ def march(
         for s in range(steps):
             _begin(w, at, times, inputs, columns, s, first, lanes)
             _keep(w, at, s, first, lanes, states)
-            if not are_inside(w, 0, domain, domain.shape[1], at.alive, lanes):
+            if not are_inside(w, at.register, domain, domain.shape[1], at.alive, lanes):
                 _end_outside(w, at, domain, s, first, lanes, states, ended)
             if is_map == 1:
                 _map_step(tape, w, at, moving, lanes)
@@ -74,7 +74,7 @@ def march(
                 if not any_alive(w, at, lanes):
                     break
             copy_rows(w, at.new, at.x, at.n, lanes)
-            copy_rows(w, at.new, 0, at.n, lanes)
+            copy_rows(w, at.new, at.register, at.n, lanes)
         _complete(w, at, times, first, lanes, states, ended)
 
 
@@ -102,8 +102,8 @@ def _begin(
             b = first + lane if inputs.shape[0] > 1 else 0
             if w[at.h, lane] != 0.0:
                 w[entry, lane] = inputs[b, held, j]
-        if entry < at.n:
-            copy_rows(w, entry, at.x + entry, 1, lanes)
+            if entry < at.n:
+                w[at.x + entry, lane] = w[entry, lane]
 
 
 @inlined
@@ -127,7 +127,7 @@ def _end_outside(
 ) -> None:
     """End the lanes whose start or inputs are outside the domain; padding does not look."""
     for lane in range(lanes):
-        variable = outsider(w, 0, domain, domain.shape[1], lane)
+        variable = outsider(w, at.register, domain, domain.shape[1], lane)
         if w[at.h, lane] != 0.0 and variable >= 0:
             note_end(w, at, lane, LEFT_DOMAIN, ended, first + lane)
             note_exit(variable, w[variable, lane], domain, ended, first + lane)
@@ -173,7 +173,7 @@ def _runge_kutta_step(tape: Tape, w: Array, at: Places, moving: Integers, lanes:
 
 @part
 def _rates_at_new(tape: Tape, w: Array, at: Places, lanes: int) -> None:
-    copy_rows(w, at.new, 0, at.n, lanes)
+    copy_rows(w, at.new, at.register, at.n, lanes)
     run(tape, w, lanes)
     take_rates(tape, w, at.k + at.n, lanes)
 

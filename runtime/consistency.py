@@ -1,0 +1,152 @@
+"""Whether the parts of a program fit together: what an artifact from a stranger must pass.
+
+A program that passes can be packed and run: every index is in range, every name is known, every
+table has the coefficients that its axes ask for. It says nothing about whether the field is right.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from typing import Final
+
+import numpy as np
+
+from runtime.code import Code
+from runtime.kernels.tape import MOST_AXES
+from runtime.program import Axis, Constant, Control, Field, Kind, Method, Program, State, Table
+from runtime.tape import check_code
+
+MOST_CODE: Final = 2_000_000
+"""Characters of all code in a program."""
+MOST_VARIABLES: Final = 1000
+MOST_TERMS: Final = 10_000
+NODES_OF_SPLINE: Final = 4
+
+
+def faults(program: Program) -> Iterator[str]:
+    """Every way in which the program does not fit together, as a sentence."""
+    yield from _named(program)
+    yield from _sized(program)
+    yield from _ranged(program)
+    yield from _field(program)
+    yield from _coded(program)
+
+
+def _named(program: Program) -> Iterator[str]:
+    outputs = tuple(output.name for output in program.outputs)
+    names = (*program.register, *outputs)
+    for name in (program.name, *names):
+        if not name.isidentifier():
+            yield f"{name!r} is no name"
+    for name in _repeated(names):
+        yield f"two variables are named '{name}'"
+    if program.fidelity:
+        for name in {*program.fidelity.tolerance, *program.fidelity.region} - set(names):
+            yield f"fidelity speaks of '{name}', which does not exist"
+    if not program.states:
+        yield "the program has no state"
+
+
+def _sized(program: Program) -> Iterator[str]:
+    if len(program.register) > MOST_VARIABLES or len(program.field.terms) > MOST_TERMS:
+        yield "the program has too many variables or terms"
+    if sum(len(code.text) for _, code, _ in _codes(program)) > MOST_CODE:
+        yield f"the program has more than {MOST_CODE} characters of code"
+
+
+def _ranged(program: Program) -> Iterator[str]:
+    variables: tuple[State | Control, ...] = (*program.states, *program.controls)
+    for variable in variables:
+        discrete = isinstance(variable, State) and variable.kind is Kind.DISCRETE
+        if not (variable.low < variable.high or (discrete and variable.low == variable.high)):
+            yield f"the domain of '{variable.name}' is empty"
+    for state in program.states:
+        if (state.kind is Kind.DISCRETE) != bool(state.values):
+            yield f"'{state.name}' is not discrete and has values, or is and has none"
+    units = [*(part.unit for part in variables), *(output.unit for output in program.outputs)]
+    if any(unit.scale == 0.0 for unit in units):
+        yield "a unit has the scale 0"
+
+
+def _field(program: Program) -> Iterator[str]:
+    field = program.field
+    known = {state.name for state in program.states if state.is_driven}
+    if set(field.driven) != known or _repeated(field.driven):
+        yield "the field does not drive the driven states"
+    if field.every < 0.0:
+        yield "the field's step is negative"
+    if field.formula is not None and len(field.formula) != len(field.driven):
+        yield "the formula lacks a driven state"
+    if field.formula is None and not field.tables:
+        yield "the field has neither tables nor formula"
+    if field.bounds and len(field.bounds) != len(field.driven):
+        yield "the error bounds are not those of the driven states"
+    for index, table in enumerate(field.tables):
+        for fault in _table(program, table):
+            yield f"table {index}: {fault}"
+    yield from _terms(field)
+
+
+def _terms(field: Field) -> Iterator[str]:
+    for term in field.terms:
+        if not 0 <= term.component < len(field.driven) or not 0 <= term.table < len(field.tables):
+            yield "a term belongs to no driven state or no table"
+        elif not 0 <= term.column < field.tables[term.table].coefficients.shape[-1]:
+            yield f"a term reads column {term.column}, which its table lacks"
+
+
+def _table(program: Program, table: Table) -> Iterator[str]:
+    names = tuple(axis.name for axis in table.axes)
+    if not 1 <= len(names) <= MOST_AXES or _repeated(names) or set(names) - set(program.register):
+        yield f"its axes are not 1 to {MOST_AXES} variables"
+    least = NODES_OF_SPLINE if table.method is Method.CUBIC else 2
+    for axis in table.axes:
+        if not (axis.low < axis.high and math.isfinite(axis.high - axis.low)):
+            yield f"the axis '{axis.name}' is empty"
+        if axis.count < least:
+            yield f"the axis '{axis.name}' has {axis.count} nodes, less than {least}"
+    expected = tuple(_count(axis, table.method) for axis in table.axes)
+    if table.coefficients.shape[:-1] != expected or table.coefficients.shape[-1:] in {(), (0,)}:
+        yield f"its coefficients are {table.coefficients.shape}, not {expected} times columns"
+    elif not np.isfinite(table.coefficients).all():
+        yield "it has coefficients that are not finite"
+
+
+def _count(axis: Axis, method: Method) -> int:
+    more = 0 if method is Method.LINEAR else 2
+    return axis.count + more + axis.periodic
+
+
+def _coded(program: Program) -> Iterator[str]:
+    for what, code, names in _codes(program):
+        try:
+            check_code(code, names)
+        except ValueError as problem:
+            yield f"{what}: {problem}"
+
+
+def _codes(program: Program) -> Iterator[tuple[str, Code, tuple[str, ...]]]:
+    """Every piece of code, what it is for, and the names that it may read."""
+    register = program.register
+    parts: tuple[State | Control | Constant, ...]
+    parts = (*program.states, *program.controls, *program.constants)
+    given = tuple(
+        part.name for part in parts if not isinstance(part, State) or part.kind is Kind.DISCRETE
+    )
+    for state in program.states:
+        if state.closure is not None:
+            yield f"closure of '{state.name}'", state.closure, register
+    for output in program.outputs:
+        yield f"output '{output.name}'", output.code, register
+    for name, code in zip(program.field.driven, program.field.formula or (), strict=False):
+        yield f"formula of '{name}'", code, register
+    for term in program.field.terms:
+        yield "coefficient of a term", term.coefficient, given
+    if program.judge_when is not None:
+        signals = tuple(binding.name for binding in program.bindings)
+        yield "judge_when", program.judge_when, (*register, *signals)
+
+
+def _repeated(names: Iterable[str]) -> list[str]:
+    seen: set[str] = set()
+    add: Callable[[str], None] = seen.add
+    return sorted({name for name in names if name in seen or add(name)})  # type: ignore[func-returns-value]  # add() gives None, so the name is kept only when it was there
