@@ -50,7 +50,7 @@ def tabulate(values: npt.ArrayLike, axes: tuple[Axis, ...], method: Method) -> T
     for position, axis in enumerate(axes):
         first = np.moveaxis(nodes, position, 0)
         nodes = np.moveaxis(_coefficients(first, axis, method), 0, position)
-    return Table(axes, method, frozen(nodes))
+    return Table(axes, method, frozen(np.ascontiguousarray(nodes)))
 
 
 def lookup(table: Table, points: npt.ArrayLike) -> Array:
@@ -65,7 +65,7 @@ def lookup(table: Table, points: npt.ArrayLike) -> Array:
         block_address(),
         table.method is Method.CUBIC,
         *grid_of(table.axes, table.method),
-        _column(table),
+        _read_only(table.coefficients.reshape(-1)),
         flat,
         out,
     )
@@ -85,7 +85,7 @@ def lookup_jacobian(table: Table, points: npt.ArrayLike) -> Array:
         block_address(),
         table.method is Method.CUBIC,
         *grid_of(table.axes, table.method),
-        _column(table),
+        _read_only(table.coefficients.reshape(-1)),
         flat,
         out,
     )
@@ -140,21 +140,16 @@ def _require_axes(axes: tuple[Axis, ...], method: Method) -> None:
 
 
 def _flat(table: Table, points: npt.ArrayLike) -> tuple[Array, tuple[int, ...]]:
-    """Points as (N, d), contiguous, and their leading shape."""
-    at = np.ascontiguousarray(points, dtype=np.float64)
+    """Points as kernels read them, (N, d), and their leading shape."""
+    at = np.asarray(points, dtype=np.float64, order="C")
     d = len(table.axes)
     if at.ndim == 0 or at.shape[-1] != d:
         raise ValueError(f"points need {d} coordinates each (got the shape {at.shape})")
-    return at.reshape(-1, d), at.shape[:-1]
+    return _read_only(at.reshape(-1, d)), at.shape[:-1]
 
 
-def _column(table: Table) -> Array:
-    """The coefficients as kernels read them: flat, and not writeable, as mapped ones are."""
-    return frozen_view(table.coefficients)
-
-
-def frozen_view(coefficients: Array) -> Array:
-    """The same numbers, flat and not writeable: kernels are compiled for this one kind of array."""
-    flat = coefficients.reshape(-1)
-    flat.setflags(write=False)
-    return flat
+def _read_only(view: Array) -> Array:
+    """The same numbers, not writeable, as mapped ones are: kernels are compiled for these alone."""
+    same = np.asarray(view).view()
+    same.setflags(write=False)
+    return same

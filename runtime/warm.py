@@ -2,12 +2,23 @@
 
 from collections.abc import Callable
 
+import numpy as np
+
+from runtime.interpolation import lookup, lookup_jacobian, tabulate
 from runtime.kernels.cache import is_warm, mark_warm
+from runtime.kernels.interpolate import block_address
+from runtime.program import Axis, Method
 
 __all__ = ["is_warm", "warm"]
 
-KERNELS: tuple[tuple[str, Callable[[], object]], ...] = ()
-"""Name and a small call that compiles it."""
+TABLE = tabulate(np.zeros((2, 1)), (Axis("x", 0.0, 1.0, 2, periodic=False),), Method.LINEAR)
+
+KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
+    ("interpolation", block_address),
+    ("table lookup", lambda: lookup(TABLE, [0.5])),
+    ("table derivatives", lambda: lookup_jacobian(TABLE, [0.5])),
+)
+"""Names, and small calls that compile; each kernel is compiled for one kind of arguments only."""
 
 
 def warm(progress: Callable[[str, int, int], None]) -> None:

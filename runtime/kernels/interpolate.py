@@ -55,10 +55,14 @@ def _locate(
     for i in range(lanes):
         u[i] = x[i]
     if periodic:
+        far = False
         for i in range(lanes):
             u[i] = (u[i] - origin) * inverse_step
-            if not abs(u[i]) < HUGE:
-                u[i] = np.fmod(u[i], cells)
+            far |= not abs(u[i]) < HUGE
+        if far:
+            for i in range(lanes):
+                if not abs(u[i]) < HUGE:
+                    u[i] = np.fmod(x[i] - origin, cells / inverse_step) * inverse_step
         for i in range(lanes):
             u[i] = fma(-np.floor(u[i] / cells), cells, u[i])
     else:
