@@ -9,6 +9,7 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Booleans, Integers
+from verifier.traces.log import LATEST
 
 _NANOSECONDS = {
     "ns": 1,
@@ -31,7 +32,6 @@ _UNITS = "|".join(sorted(_NANOSECONDS, key=len, reverse=True))
 _TIME = re.compile(rf"[%#_]*{_STEM}(?:[ _.]*[\[(]?(?P<unit>{_UNITS})[\])]?)?\Z", re.IGNORECASE)
 _SECONDS = re.compile(r"(?P<stem>.*\b|.*_)(?:sec|secs|seconds)\Z", re.IGNORECASE)
 _REST = ("nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds")
-LARGEST = 1 << 62
 
 
 @final
@@ -100,7 +100,7 @@ def _nanoseconds(cells: Sequence[str], scale: int) -> tuple[Integers, Booleans]:
     valid = np.zeros(len(cells), dtype=np.bool_)
     for row, cell in enumerate(cells):
         number = _number(cell)
-        if number is not None and abs(number) * scale < LARGEST:
+        if number is not None and abs(number) * scale < LATEST:
             times[row] = round(number * scale)
             valid[row] = True
     return times, valid

@@ -7,6 +7,10 @@ from typing import TypeAlias, final
 from runtime.arrays import Integers
 from verifier.traces.trace import Loss
 
+LATEST = 4 * 10**18
+"""Nanoseconds since 1970, in 2096. Later times are garbage; earlier ones can be subtracted from
+one another in 64 bits."""
+
 
 @final
 @dataclass(frozen=True, slots=True)

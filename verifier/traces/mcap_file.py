@@ -166,6 +166,8 @@ def _read_chunk(body: bytes, place: int, claimed: int, reading: _Reading) -> Non
         reading.gathering.lose(
             "torn chunk", f"at byte {place}: {len(body)} of {claimed} bytes; no checksum to compare"
         )
+    elif not chunk.uncompressed_crc:
+        reading.gathering.notes.append("chunks carry no checksum: damage in them may go unseen")
     elif not _crc_fits(chunk.uncompressed_crc, inside):
         reading.gathering.lose("corrupt chunk", f"at byte {place}: its checksum is wrong")
         return

@@ -14,9 +14,12 @@ def angle(which: str, x: Array, y: Array, z: Array, w: Array) -> Array:
     The quaternion need not be of unit length. Yaw and roll are in (-pi, pi], pitch in
     [-pi/2, pi/2].
     """
-    squares = x * x + y * y + z * z + w * w
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        two = np.where(squares > 0.0, 2.0 / squares, np.nan)
+    # Divided by the largest part first: squares of garbage overflow.
+    size = np.maximum.reduce([np.abs(x), np.abs(y), np.abs(z), np.abs(w)])
+    size = np.where((size > 0.0) & np.isfinite(size), size, np.nan)
+    with np.errstate(invalid="ignore"):
+        x, y, z, w = x / size, y / size, z / size, w / size
+    two = 2.0 / (x * x + y * y + z * z + w * w)
     if which == "yaw":
         return np.arctan2(two * (w * z + x * y), 1.0 - two * (y * y + z * z))
     if which == "roll":

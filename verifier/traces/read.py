@@ -165,7 +165,8 @@ def _reading(
     values = found.values[finite]
     if state is not None and state.kind is Kind.PERIODIC:
         values = np.unwrap(values, period=state.high - state.low)
-    delay = round(bound.binding.delay * 1e9)
+    # A delay of decades leaves nothing to compare, as does one of centuries.
+    delay = round(min(max(bound.binding.delay, -1e9), 1e9) * 1e9)
     return _Reading(bound, run.clock, run.times[finite] - delay, values, found.losses, found.notes)
 
 

@@ -11,7 +11,7 @@ from verifier.traces import json_messages, wire
 from verifier.traces.columns import Column, Decoded
 from verifier.traces.definitions import Struct
 from verifier.traces.fields import FieldError, check, shape, stamp_leaves
-from verifier.traces.log import Messages, Sheet
+from verifier.traces.log import LATEST, Messages, Sheet
 from verifier.traces.paths import MessagePath, Steps
 from verifier.traces.quaternions import angle
 from verifier.traces.trace import Loss
@@ -114,8 +114,8 @@ def _stamps(seconds: Column, nanoseconds: Column) -> Integers:
 
 
 def _integers(numbers: Array) -> Integers:
-    """Whole numbers; 0 for what is none, or would not fit as seconds into 63 bits."""
-    safe = np.where(np.isfinite(numbers) & (np.abs(numbers) < 9e9), numbers, 0.0)
+    """Whole numbers; 0 for what is none, or is too large for seconds."""
+    safe = np.where(np.isfinite(numbers) & (np.abs(numbers) < LATEST / 1e9), numbers, 0.0)
     return safe.astype(np.int64)
 
 

@@ -5,7 +5,7 @@ from typing import Generic, TypeVar, final
 
 import numpy as np
 
-from verifier.traces.log import Channel, MessageLog, Messages, Wanted
+from verifier.traces.log import LATEST, Channel, MessageLog, Messages, Wanted
 from verifier.traces.trace import Loss
 
 UNBOUNDED = 1 << 62
@@ -38,7 +38,10 @@ class Gathering(Generic[Key]):
         self._room.setdefault(key, room if self._wanted.has(channel.topic) else 0)
 
     def add(self, key: Key, log_time: int, payload: bytes) -> None:
-        """A message at `log_time` nanoseconds."""
+        """A message at `log_time` >= 0 nanoseconds."""
+        if log_time > LATEST:
+            self.lose("impossible log time", "after the year 2096")
+            return
         self._times.setdefault(key, []).append(log_time)
         self._places.setdefault(key, []).append(self.count)
         self.count += 1
@@ -61,7 +64,7 @@ class Gathering(Generic[Key]):
         streams = tuple(
             Messages(
                 channel,
-                np.array(self._times.get(key, []), dtype=np.uint64).astype(np.int64),
+                np.array(self._times.get(key, []), dtype=np.int64),
                 np.array(self._places.get(key, []), dtype=np.int64),
                 tuple(self._payloads.get(key, ())) if self._wanted.has(channel.topic) else (),
             )

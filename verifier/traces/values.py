@@ -62,14 +62,14 @@ def measured(binding: Binding, meaning: Meaning, column: Column) -> Measured:
         if texts and not np.isfinite(column.numbers).any():
             raise _not_numbers(binding, meaning.texts, sorted(texts))
     unit = 1.0 if meaning.derived else binding.unit.scale
-    numbers = binding.scale * column.numbers * unit + binding.offset
+    with np.errstate(over="ignore"):  # what overflows is counted as not finite
+        numbers = binding.scale * column.numbers * unit + binding.offset
     missing = int((~np.isfinite(numbers)).sum())
     where = f"{binding.name} at {binding.path}"
     losses = (Loss("no finite value", missing, where),) if missing else ()
-    notes = ()
-    if meaning.derived and binding.unit.scale != 1.0:
-        notes = (f"{where}: in radians, the unit {binding.unit.text} is not applied",)
-    return Measured(numbers, losses, notes)
+    ignored = meaning.derived and binding.unit.scale != 1.0
+    note = f"{where}: in radians, the unit {binding.unit.text} is not applied"
+    return Measured(numbers, losses, (note,) if ignored else ())
 
 
 def _indices(binding: Binding, meaning: Meaning, texts: tuple[str | None, ...]) -> Measured:

@@ -83,7 +83,7 @@ class _Slab:
     order: str
 
     def payload(self, index: int) -> bytes:
-        return self.payloads[self.rows[index]]
+        return self.payloads[int(self.rows[index])]
 
     def gather(self, chosen: Integers, slot: Slot) -> npt.NDArray[np.generic]:
         """The numbers at the slot in the chosen messages (c,)."""
@@ -117,7 +117,8 @@ def _slabs(payloads: Sequence[bytes], encoding: str) -> Iterator[_Slab]:
 def _take(slab: _Slab, chosen: Integers, leaf: int, slot: Slot, sink: _Sink) -> None:
     rows = slab.rows[chosen]
     if slot.code:
-        sink.numbers[leaf, rows] = slab.gather(chosen, slot)
+        with np.errstate(invalid="ignore"):  # a signalling NaN is a NaN
+            sink.numbers[leaf, rows] = slab.gather(chosen, slot)
         return
     texts = sink.texts.setdefault(leaf, [None] * len(slab.payloads))
     for row in rows:

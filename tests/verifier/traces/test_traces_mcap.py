@@ -128,7 +128,7 @@ def test_trailing_garbage_costs_nothing_and_is_said(log: Path, workshop: Any) ->
 
 def test_a_flipped_byte_in_a_chunk_drops_that_chunk_and_says_so(log: Path, workshop: Any) -> None:
     data = bytearray(log.read_bytes())
-    begin, end = chunks(bytes(data))[3]
+    _, end = chunks(bytes(data))[3]
     data[end - 30] ^= 0x10
     log.write_bytes(bytes(data))
 
@@ -141,6 +141,15 @@ def test_a_flipped_byte_in_a_chunk_drops_that_chunk_and_says_so(log: Path, works
         "corrupt chunk": 1,
         "messages missing": len(lost),
     }
+
+
+def test_a_file_without_checksums_is_noted(workshop: Any, make: Any) -> None:
+    notes = [make.said("/a", 0.1 * i, x=float(i)) for i in range(20)]
+
+    trace = workshop.read(workshop.mcap(notes, enable_crcs=False), x="/a.x")
+
+    assert any("no checksum" in note for note in trace.notes)
+    assert trace.losses == ()
 
 
 def test_a_zeroed_chunk_is_said(log: Path, workshop: Any) -> None:
