@@ -57,7 +57,8 @@ def read_csv(path: Path) -> Sheet:
 
 def _no_clock(path: Path, names: Sequence[str]) -> SpecError:
     named = "name one column t, time, timestamp or stamp (or stamp_ms, stamp_ns, ...)"
-    if 2 * sum(re.match(r"[-+]?[.\d]", name) is not None for name in names) > len(names):
+    numbers = [name for name in names if re.match(r"[-+]?(?:\.?\d|nan\Z|inf\Z)", name)]
+    if 2 * len(numbers) > len(names):
         return file_fault(path, "V309", "the first line holds numbers, not names", named)
     listed = nearest_help("", names, "columns")
     return file_fault(path, "V309", "no column holds the time", f"{named}\n{listed}")

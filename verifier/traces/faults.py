@@ -8,6 +8,7 @@ V309 no time column                  V310 a driven state is not bound
 V311 no message definition           V312 no sensor stamps
 """
 
+import re
 from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -46,14 +47,15 @@ def binding_diagnostic(
 
 
 def origin_span(source: Source, origin: str) -> Span | None:
-    """The token that begins at `file:line:column`; None where the origin says no place."""
+    """The key or value that begins at `file:line:column`; None where that is no place."""
     try:
         _, line_text, column_text = origin.rsplit(":", 2)
         line, column = int(line_text), int(column_text)
     except ValueError:
         return None
     rest = source.line(line)[column - 1 :]
-    width = len(rest.split("#", 1)[0].rstrip()) or 1
+    key = re.match(r"[\w-]+(?=\s*:)", rest)
+    width = len(key.group() if key else rest.split("#", 1)[0].rstrip()) or 1
     return Span(line, column, line, column + width)
 
 
@@ -72,8 +74,9 @@ def _path_span(source: Source, binding: Binding, part: tuple[int, int] | None) -
     if whole is None or not binding.path:
         return whole
     for line in range(whole.line, whole.line + 8):
-        start = whole.column - 1 if line == whole.line else 0
-        found = source.line(line).find(binding.path, start)
+        # The place is that of the key, which may be spelled like the path.
+        start = source.line(line).find(":", whole.column) if line == whole.line else 0
+        found = source.line(line).find(binding.path, max(start, 0))
         if found >= 0:
             low, high = part or (0, len(binding.path))
             return Span(line, found + low + 1, line, found + max(high, low + 1) + 1)

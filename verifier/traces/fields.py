@@ -30,12 +30,22 @@ _QUATERNION = frozenset("xyzw")
 
 @final
 class FieldError(Exception):
-    """Why a path finds no number in a channel: a code of `faults`, a message, help."""
+    """Why a path finds no number in a channel: a code of `faults`, a message, help.
 
-    def __init__(self, code: str, message: str, help: str = "") -> None:  # noqa: A002  # as in Diagnostic
+    depth: which of the path's steps is at fault, where it is one of them.
+    """
+
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        help: str = "",  # noqa: A002  # as in Diagnostic
+        depth: int | None = None,
+    ) -> None:
         self.code = code
         self.message = message
         self.help = help
+        self.depth = depth
         super().__init__(message)
 
 
@@ -64,7 +74,10 @@ def check(root: Struct, path: MessagePath) -> Node:
     node: Node = root
     for depth, step in enumerate(path.steps):
         above = steps_text(path.steps[:depth]) or path.topic
-        node = _item(node, step, above) if isinstance(step, int) else _field(node, step, above)
+        try:
+            node = _item(node, step, above) if isinstance(step, int) else _field(node, step, above)
+        except FieldError as error:
+            raise FieldError(error.code, error.message, error.help, depth) from error
     at = steps_text(path.steps)
     if path.derived:
         if not is_quaternion(node):
@@ -103,6 +116,9 @@ def stamp_leaves(root: Struct) -> StampLeaves | None:
 
 
 def _defined(channel: Channel) -> Struct:
+    if not channel.message_type:
+        message = f"the log names no message type for {channel.topic}"
+        raise FieldError("V311", message, "record again with the message definitions")
     try:
         text = channel.schema.decode("utf-8", errors="replace")
         return definition(channel.message_type, channel.schema_encoding, text)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from spec_schema.diagnostics import SpecError
 from verifier.traces.bag1_file import is_bag1, read_bag1
 from verifier.traces.bag2_file import is_sqlite, read_bag2
 from verifier.traces.csv_file import is_csv, read_csv
@@ -22,9 +23,7 @@ def open_log(path: Path, wanted: Wanted) -> LogFile:
     try:
         return _read_folder(path, wanted) if path.is_dir() else _read_file(path, wanted)
     except OSError as error:
-        raise file_fault(
-            path, "V301", f"the log can't be read: {error.strerror or error}"
-        ) from error
+        raise _unreadable(path, error) from error
 
 
 def attached_program(path: Path) -> tuple[str, bytes] | None:
@@ -37,9 +36,14 @@ def attached_program(path: Path) -> tuple[str, bytes] | None:
             return None
         return find_attachment(path, ".specc")
     except OSError as error:
-        raise file_fault(
-            path, "V301", f"the log can't be read: {error.strerror or error}"
-        ) from error
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> SpecError:
+    if isinstance(error, FileNotFoundError):
+        return file_fault(path, "V301", "there is no such file")
+    reason = (error.strerror or str(error)).lower()
+    return file_fault(path, "V301", f"the log can't be read: {reason}")
 
 
 def _head(path: Path) -> bytes:

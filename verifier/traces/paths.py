@@ -51,6 +51,14 @@ class MessagePath:
         """The numbers that have to be read for it: one, or x, y, z and w of a quaternion."""
         return tuple((*self.steps, name) for name in "xyzw") if self.derived else (self.steps,)
 
+    def part(self, depth: int) -> tuple[int, int] | None:
+        """From where to where in the text the step stands; None where it is written unusually."""
+        above, whole = (path_text(self.topic, self.steps[:end]) for end in (depth, depth + 1))
+        if not self.text.startswith(whole):
+            return None
+        dot = isinstance(self.steps[depth], str)
+        return len(above) + dot, len(whole)
+
 
 def parse_path(text: str) -> MessagePath:
     """The path that `text` writes; raises PathError.

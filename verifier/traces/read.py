@@ -17,6 +17,7 @@ from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fau
 from verifier.traces.fields import FieldError
 from verifier.traces.log import LogFile, MessageLog, Sheet, Wanted
 from verifier.traces.open_log import open_log
+from verifier.traces.paths import MessagePath
 from verifier.traces.samples import Samples, check_topic, sample_sheet, sample_topic
 from verifier.traces.trace import Loss, Series, Trace
 from verifier.traces.values import Meaning, Measured, NotNumbersError, measured
@@ -85,7 +86,7 @@ def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str,
         streams = tuple(s for s in log.streams if s.channel.topic == topic and s.payloads)
         here = [one for one in bound if one.topic == topic and one.path]
         faults = [
-            _field_diagnostic(program, one.binding, error)
+            _field_diagnostic(program, one.binding, one.path, error)
             for one in here
             if one.path and (error := check_topic(streams, one.path))
         ]
@@ -97,14 +98,19 @@ def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str,
     return topics
 
 
-def _field_diagnostic(program: Program, binding: Binding, error: FieldError) -> Diagnostic:
-    return binding_diagnostic(program, binding, error.code, error.message, help=error.help)
+def _field_diagnostic(
+    program: Program, binding: Binding, path: MessagePath, error: FieldError
+) -> Diagnostic:
+    part = None if error.depth is None else path.part(error.depth)
+    return binding_diagnostic(
+        program, binding, error.code, error.message, help=error.help, part=part
+    )
 
 
 def _require_stamps(path: Path, topics: Mapping[str, Samples]) -> None:
     faults = {topic: stamp_fault(samples) for topic, samples in topics.items()}
     problems = [
-        file_diagnostic(path, "V312", f"{topic}: {fault}", "use log times: --clock log")
+        file_diagnostic(path, "V312", f"{topic}: {fault}", "take the log times instead")
         for topic, fault in faults.items()
         if fault
     ]
@@ -140,11 +146,15 @@ def _readings(
             )
             continue
         if reading is None:
+            message = f"the topic {one.topic} has no messages"
+            lost = _damage(losses)
+        elif not reading.times.size:
             message = f"no usable sample stands at {one.binding.path}"
-            lost = _damage([*losses, *_topic_losses(one.topic, topics, runs)])
-            problems.append(binding_diagnostic(program, one.binding, "V306", message, help=lost))
+            lost = _damage([*losses, *_topic_losses(one.topic, topics, runs), *reading.losses])
         else:
             readings.append(reading)
+            continue
+        problems.append(binding_diagnostic(program, one.binding, "V306", message, help=lost))
     if problems:
         raise SpecError(problems)
     return readings
@@ -153,15 +163,13 @@ def _readings(
 def _reading(
     program: Program, bound: Bound, topics: Mapping[str, Samples], runs: Mapping[str, _Run]
 ) -> _Reading | None:
-    """The variable's samples; None where there are none."""
+    """The variable's samples; None where its topic has none."""
     if bound.topic not in topics:
         return None
     run = runs[bound.topic]
     state = next((s for s in program.states if s.name == bound.binding.name), None)
     found = _measured(program, bound, state, topics[bound.topic], run)
     finite: Booleans = np.isfinite(found.values)
-    if not finite.any():
-        return None
     values = found.values[finite]
     if state is not None and state.kind is Kind.PERIODIC:
         values = np.unwrap(values, period=state.high - state.low)

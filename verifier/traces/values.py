@@ -59,8 +59,9 @@ def measured(binding: Binding, meaning: Meaning, column: Column) -> Measured:
             return _indices(binding, meaning, column.texts)
         if texts and texts <= _LOGIC.keys():
             return Measured(np.array([_LOGIC.get(text or "", np.nan) for text in column.texts]), ())
-        if texts and not np.isfinite(column.numbers).any():
-            raise _not_numbers(binding, meaning.texts, sorted(texts))
+        words = sorted(text for text in texts if not _is_number(text))
+        if words and not np.isfinite(column.numbers).any():
+            raise _not_numbers(binding, meaning.texts, words)
     unit = 1.0 if meaning.derived else binding.unit.scale
     with np.errstate(over="ignore"):  # what overflows is counted as not finite
         numbers = binding.scale * column.numbers * unit + binding.offset
@@ -70,6 +71,15 @@ def measured(binding: Binding, meaning: Meaning, column: Column) -> Measured:
     ignored = meaning.derived and binding.unit.scale != 1.0
     note = f"{where}: in radians, the unit {binding.unit.text} is not applied"
     return Measured(numbers, losses, (note,) if ignored else ())
+
+
+def _is_number(text: str) -> bool:
+    """Whether the text is a number; `nan` and `inf` are."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _indices(binding: Binding, meaning: Meaning, texts: tuple[str | None, ...]) -> Measured:

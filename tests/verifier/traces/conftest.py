@@ -124,6 +124,7 @@ class Workshop:
         compression: CompressionType = CompressionType.NONE,
         chunk_size: int = 1024,
         attachments: Mapping[str, bytes] | None = None,
+        silent: Sequence[str] = (),
         **options: bool,
     ) -> Path:
         path = self.folder / name
@@ -132,6 +133,8 @@ class Workshop:
         channels: dict[tuple[str, str], int] = {}
         for key, data in (attachments or {}).items():
             writer.add_attachment(0, 0, key, "application/zip", data)
+        for topic in silent:
+            writer.register_channel(topic, "json", 0)
         for note in notes:
             key = (note.topic, note.encoding + note.schema)
             if key not in channels:
