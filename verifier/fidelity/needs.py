@@ -89,6 +89,14 @@ def parts_of(program: Program) -> dict[str, State | Control]:
     return states | {control.name: control for control in program.controls}
 
 
+def names_read(program: Program) -> set[str]:
+    """The names that the field depends on."""
+    field = program.field
+    coefficients = tuple(term.coefficient for term in field.terms)
+    axes = {axis.name for table in field.tables for axis in table.axes}
+    return axes | _tokens((*(field.formula or ()), *coefficients))
+
+
 def held(series: Series, times: Array) -> Array:
     """The latest value at each time: zero-order hold; before the first sample, the first."""
     at = np.searchsorted(series.times, times, side="right") - 1
@@ -106,7 +114,7 @@ def _series(trace: Trace, name: str) -> Series | None:
 
 
 def _signals(program: Program, trace: Trace) -> tuple[Input, ...]:
-    read = _tokens(() if program.judge_when is None else (program.judge_when,))
+    read = _tokens(_condition(program))
     names = [b.name for b in program.bindings if b.name in read - set(program.register)]
     return tuple(_input(trace, name, -1, None) for name in names)
 
@@ -117,19 +125,14 @@ def _inputs(program: Program, trace: Trace, predicted: set[int]) -> tuple[Input,
     ]
     offset = len(program.states)
     parts += [(offset + i, control) for i, control in enumerate(program.controls)]
-    read = _read_by(program)
+    read = names_read(program) | _tokens(_condition(program))
     return tuple(
         _input(trace, part.name, column, part) for column, part in parts if part.name in read
     )
 
 
-def _read_by(program: Program) -> set[str]:
-    """The names that the field and `judge_when` depend on."""
-    field = program.field
-    coefficients = tuple(term.coefficient for term in field.terms)
-    judged = () if program.judge_when is None else (program.judge_when,)
-    axes = {axis.name for table in field.tables for axis in table.axes}
-    return axes | _tokens((*(field.formula or ()), *coefficients, *judged))
+def _condition(program: Program) -> tuple[Code, ...]:
+    return () if program.judge_when is None else (program.judge_when,)
 
 
 def _tokens(codes: tuple[Code, ...]) -> set[str]:

@@ -1,30 +1,37 @@
 """Where in phase space: the cells that were seen, and the mean error in each part of it."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 from scipy import stats
 
-from runtime.arrays import Array, Integers
+from runtime.arrays import Array, Booleans, Integers
 from runtime.program import Control, Fidelity, Kind, Program, State
 from verifier.fidelity.departure import CONFIDENCE, count_of, mean_of, standard_error
-from verifier.fidelity.needs import parts_of
+from verifier.fidelity.needs import Needs, names_read, parts_of
 from verifier.report.report import CellAxis, Coverage, RegionMean, Standing
 
 CELLS = {1: 20, 2: 10, 3: 5}
 """Cells per axis of the coverage, by the number of axes; more axes have 3 each."""
-PARTS = {1: 8, 2: 4, 3: 3}
-"""Parts per axis in which mean errors are told apart; more axes have 2 each."""
+MOST_AXES = 4
+PARTS = 4
+"""Parts of each axis in which mean errors are told apart: two axes jointly, more one by one."""
+STILL = 1e-6
+"""A variable that moves less than this share of its axis has no parts."""
 ENOUGH = 3
 """So many effective samples make a cell seen."""
 FEWEST_BLOCKS = 3
 """A part with fewer independent stretches has no interval worth the name."""
 
 
-def axes_of(program: Program, fidelity: Fidelity) -> tuple[CellAxis, ...]:
-    """The axes of the declared region; without one, the judged variables over their domains."""
+def axes_of(program: Program, needs: Needs, fidelity: Fidelity) -> tuple[CellAxis, ...]:
+    """The axes of the declared region; without one, what the field reads, over its domain."""
     parts = parts_of(program)
-    bounds = fidelity.region or {n: (parts[n].low, parts[n].high) for n in fidelity.tolerance}
+    constant = {each.name for each in needs.inputs if each.series is None}
+    read = [name for name in parts if name in names_read(program) and name not in constant]
+    chosen = (read or list(fidelity.tolerance))[:MOST_AXES]
+    bounds = fidelity.region or {name: (parts[name].low, parts[name].high) for name in chosen}
     count = CELLS.get(len(bounds), 3)
     return tuple(_axis(parts[name], edges, count) for name, edges in bounds.items())
 
@@ -41,29 +48,52 @@ def coverage_of(axes: tuple[CellAxis, ...], values: Array, required: float) -> C
 def region_means(
     axes: tuple[CellAxis, ...], places: Array, errors: Array, blocks: Integers, tolerance: float
 ) -> tuple[RegionMean, ...]:
-    """The mean error of the windows in each part of the region that holds enough of them.
+    """The mean error of the windows in each visited part of the region that holds enough of them.
 
     places (W, d): where each window ran. A part exceeds the tolerance where that is shown after
     Holm's correction for the number of parts.
     """
-    shape = tuple(min(axis.count, PARTS.get(len(axes), 2)) for axis in axes)
-    cells = _cell_of(axes, places, shape)
     found, chances = [], []
-    for flat, index in enumerate(product(*map(range, shape))):
-        here = cells == flat
+    for bounds, here in _visited_parts(axes, places):
         if count_of(blocks[here]) < FEWEST_BLOCKS:
             continue
         mean, interval = mean_of(errors[here], blocks[here])
-        bounds = _bounds(axes, index, shape)
         inside = max(abs(interval.low), abs(interval.high)) <= tolerance
         standing = Standing.WITHIN if inside else Standing.UNDECIDED
         found.append(RegionMean(bounds, int(np.sum(here)), mean, interval, standing))
         chances.append(_chance(errors[here], blocks[here], tolerance))
     shown = holm(np.array(chances), (1.0 - CONFIDENCE) / 2.0)
     return tuple(
-        RegionMean(r.bounds, r.windows, r.mean, r.interval, Standing.EXCEEDED) if s else r
-        for r, s in zip(found, shown, strict=True)
+        replace(region, standing=Standing.EXCEEDED) if is_shown else region
+        for region, is_shown in zip(found, shown, strict=True)
     )
+
+
+def _visited_parts(
+    axes: tuple[CellAxis, ...], places: Array
+) -> list[tuple[dict[str, tuple[float, float]], Booleans]]:
+    """Parts of what was visited of the region: their bounds, and which windows (W,) are in each."""
+    if len(places) == 0:
+        return []
+    columns = [(_visited(a, places[:, i]), places[:, i : i + 1]) for i, a in enumerate(axes)]
+    moving = [(axis, values) for axis, values in columns if axis.high > axis.low]
+    groups = [moving] if len(moving) <= 2 else [[column] for column in moving]
+    found = []
+    for group in (group for group in groups if group):
+        own = tuple(axis for axis, _ in group)
+        shape = tuple(min(axis.count, PARTS) for axis in own)
+        cells = _cell_of(own, np.concatenate([values for _, values in group], axis=1), shape)
+        for flat, index in enumerate(product(*map(range, shape))):
+            found.append((_bounds(own, index, shape), np.asarray(cells == flat)))
+    return found
+
+
+def _visited(axis: CellAxis, values: Array) -> CellAxis:
+    """The axis between the lowest and the highest value inside it; empty where none moves."""
+    inside = values[(values >= axis.low) & (values <= axis.high)]
+    if len(inside) == 0 or np.ptp(inside) <= STILL * (axis.high - axis.low):
+        return replace(axis, low=0.0, high=0.0)
+    return replace(axis, low=float(np.min(inside)), high=float(np.max(inside)))
 
 
 def worst_of(regions: tuple[RegionMean, ...]) -> RegionMean | None:

@@ -36,11 +36,12 @@ def worst(result: VariableResult, units: dict[str, Unit]) -> list[str]:
     if region is None or region.interval.low <= 0.0 <= region.interval.high:
         return []
     side = "above" if region.mean > 0.0 else "below"
+    ends = sorted([abs(region.interval.low), abs(region.interval.high)])
     return [
         (
             f"{result.name} is worst for {where(region, units)}: there the robot ends"
-            f" {quantity(abs(region.mean), result.unit)} {side} the prediction on average"
-            f" (95 % interval {_interval(region.interval, result.unit)}, {region.windows} windows)"
+            f" {quantity(abs(region.mean), result.unit)} {side} the prediction on average (95 %"
+            f" interval {span(ends[0], ends[1], result.unit)}, {region.windows} windows)"
         )
     ]
 
@@ -107,6 +108,15 @@ def more_data(result: VariableResult, judged: float) -> str:
     return (
         f"about {seconds(factor * judged)} of judged driving like this (now {seconds(judged)})"
         f" would decide about {result.name}, if its departure stays what it is"
+    )
+
+
+def scope(coverage: Coverage) -> str:
+    """How far a PASS reaches where no region was declared."""
+    names = listed([axis.name for axis in coverage.axes])
+    return (
+        f"the spec declares no region, so this holds where the robot was: in"
+        f" {percent(coverage.share)} of the domain of {names}"
     )
 
 

@@ -177,6 +177,13 @@ def _at(plan: Plan, paths: Array, chosen: Chosen, j: int) -> Array:
     return np.asarray(paths[:, np.arange(len(step))[:, None], step, j])
 
 
+def _at_start(plan: Plan, paths: Array, j: int) -> Array:
+    """Variable j as predicted at each window's start (W,), which is not its first knot."""
+    chosen = chosen_samples(plan.samples[j], plan.windows, 0.0)
+    one = closest(plan.samples[j], chosen, plan.windows.times)
+    return np.asarray(_at(plan, paths[:1], chosen, j)[0, np.arange(len(one)), one])
+
+
 def _residuals(predicted: Array, samples: Samples, chosen: Chosen) -> Array:
     """Measured minus predicted (W, m), 0 where no sample is chosen."""
     difference = turned(samples.values[chosen.index] - predicted, samples.turn)
@@ -202,5 +209,5 @@ def _errors(
         plain=residual[rows, one] + absent,
         mean=np.sum(residual * share, axis=1) + absent,
         variance=averaged(noise[j], count) + of_start + absent,
-        moved=at[0][rows, one] - paths[0, :, 0, j] + absent,
+        moved=at[0][rows, one] - _at_start(plan, paths, j) + absent,
     )

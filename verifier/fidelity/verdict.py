@@ -53,7 +53,10 @@ def decide(
     doubts += _lost(study)
     if doubts:
         return Finding(Verdict.INCONCLUSIVE, tuple(doubts), tuple(dict.fromkeys(advice)))
-    return Finding(Verdict.PASS, tuple(sentences.within(r) for r in results), ())
+    reasons = [sentences.within(r) for r in results]
+    if coverage.required == 0.0:
+        reasons.append(sentences.scope(coverage))
+    return Finding(Verdict.PASS, tuple(reasons), ())
 
 
 def _failed(study: Study, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:

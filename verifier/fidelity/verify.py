@@ -76,11 +76,12 @@ def _fidelity(program: Program) -> Fidelity:
 
 
 def _judged(program: Program, trace: Trace, fidelity: Fidelity, study: Study) -> Report:
-    axes = axes_of(program, fidelity)
+    axes = axes_of(program, study.plan.needs, fidelity)
     results = results_of(program, fidelity, study, axes)
     windows = study.plan.windows
     inside = merge(np.column_stack([windows.times, windows.times + windows.horizon]))
-    coverage = _coverage(program, study, axes, inside, fidelity.coverage)
+    required = fidelity.coverage if fidelity.region else 0.0
+    coverage = _coverage(program, study, axes, inside, required)
     units = {name: part.unit for name, part in parts_of(program).items()}
     finding = decide(study, results, coverage, length(inside), units)
     return Report(

@@ -99,10 +99,8 @@ def _seen(report: Report) -> str:
 
 def _covered(coverage: Coverage) -> str:
     spans = [f"{a.name} {span(a.low, a.high, a.unit)}" for a in coverage.axes]
-    return (
-        f"{percent(coverage.share)} of {listed(spans)} was seen,"
-        f" {percent(coverage.required)} required"
-    )
+    required = f"{percent(coverage.required)} required" if coverage.required else "none required"
+    return f"{percent(coverage.share)} of {listed(spans)} was seen, {required}"
 
 
 def _excluded(report: Report) -> str:
