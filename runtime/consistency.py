@@ -76,8 +76,8 @@ def _field(program: Program) -> Iterator[str]:
         yield "the field's step is negative"
     if field.formula is not None and len(field.formula) != len(field.driven):
         yield "the formula lacks a driven state"
-    if field.formula is None and not field.tables:
-        yield "the field has neither tables nor formula"
+    if field.formula is None and not field.terms:
+        yield "the field has neither terms nor formula"
     if field.bounds and len(field.bounds) != len(field.driven):
         yield "the error bounds are not those of the driven states"
     for index, table in enumerate(field.tables):
@@ -88,10 +88,12 @@ def _field(program: Program) -> Iterator[str]:
 
 def _terms(field: Field) -> Iterator[str]:
     for term in field.terms:
-        if not 0 <= term.component < len(field.driven) or not 0 <= term.table < len(field.tables):
+        if not 0 <= term.component < len(field.driven) or not -1 <= term.table < len(field.tables):
             yield "a term belongs to no driven state or no table"
-        elif not 0 <= term.column < field.tables[term.table].coefficients.shape[-1]:
-            yield f"a term reads column {term.column}, which its table lacks"
+        elif term.table >= 0:
+            columns = field.tables[term.table].coefficients.shape[-1:]
+            if not 0 <= term.column < sum(columns):
+                yield f"a term reads column {term.column}, which its table lacks"
 
 
 def _table(program: Program, table: Table) -> Iterator[str]:

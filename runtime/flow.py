@@ -54,7 +54,7 @@ class Flow:
 def flow_of(program: Program, source: Source = Source.TABLES) -> Flow:
     """The flow through the program's tables, or through its own formula.
 
-    A field that was kept as code has no tables: its formula serves for both.
+    A field that was kept as code has no terms: its formula serves for both.
 
     Raises:
         ValueError: the field has no formula, and `source` asks for it.
