@@ -117,8 +117,7 @@ def _named(match: re.Match[str]) -> Factor:
         raise UnitFault(Fault(start, end, "S121", f"no unit is named '{name}'", _nearest(name)))
     scale, dimension = known
     if scale is None:
-        message = f"'{name}' has no zero in common with SI, or is a logarithm"
-        raise UnitFault(Fault(start, end, "S123", message, _multiple(dimension)))
+        raise UnitFault(Fault(start, end, "S123", *_why_no_multiple(name, dimension)))
     return Factor(scale, dimension, end)
 
 
@@ -129,10 +128,12 @@ def _nearest(name: str) -> str:
     return did_you_mean(name, table())
 
 
-def _multiple(dimension: Dimension) -> str:
-    return (
-        "use K, or convert it before it is logged" if any(dimension) else "use the plain ratio, 1"
-    )
+def _why_no_multiple(name: str, dimension: Dimension) -> tuple[str, str]:
+    if any(dimension):
+        message = f"'{name}' is no multiple of an SI unit: its zero lies elsewhere"
+        return message, "use K, and an offset where it is measured"
+    message = f"'{name}' is a logarithm, no multiple of an SI unit"
+    return message, "use the ratio itself, with unit 1"
 
 
 def _unread(text: str, start: int, advice: str = "") -> UnitFault:

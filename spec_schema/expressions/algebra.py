@@ -119,10 +119,10 @@ def _quotient(a: Expr, b: Expr) -> Expr | None:
         return a
     if is_number(a, 0.0):
         return None if is_number(b, 0.0) else ZERO
-    if (positive := _negated(a)) is not None:
-        return build("neg", build("div", positive, b))
-    if (positive := _negated(b)) is not None:
-        return build("neg", build("div", a, positive))
+    if isinstance(a, Apply) and a.op == "neg":
+        return build("neg", build("div", a.operands[0], b))
+    if isinstance(b, Apply) and b.op == "neg":
+        return build("neg", build("div", a, b.operands[0]))
     scaled = _scaled(a)
     if scaled and isinstance(b, Number) and b.value and _is_normal(scaled[0] / b.value):
         return build("mul", Number(scaled[0] / b.value), scaled[1])

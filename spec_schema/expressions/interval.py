@@ -173,6 +173,9 @@ def power(a: Interval, b: Interval) -> Interval:
         base = Interval(max(-a.high, 0.0), -a.low)
         size = _positive_power(base, b)
         parts.extend((size, negate(size)))
+    if a.low == -math.inf and not b.is_empty:
+        infinite = Interval(math.inf, math.inf)
+        parts.append(_positive_power(infinite, b))  # C: (-inf)**y is inf for a broken y > 0
     if (a.nan and 0.0 in b) or (b.nan and 1.0 in a):
         parts.append(Interval(1.0, 1.0))  # nan**0 = 1**nan = 1
     if not parts:

@@ -265,8 +265,6 @@ def _call(reading: _Reading, node: ast.Call, parts: tuple[Expr, ...]) -> Expr | 
     if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS:
         return Fault(*mark, "S136", *refuse_call(reading.source(node.func)))
     op = node.func.id
-    if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
-        return Fault(start, end, "S134", f"{op} takes its arguments by position only")
     wanted = ARITY[op]
     if len(parts) < wanted or (len(parts) > wanted and op not in N_ARY):
         least = "at least " if op in N_ARY else ""

@@ -62,6 +62,7 @@ CLOSING = {"(": ")", "[": "]", "{": "}"}
 TOKEN = re.compile(
     r"(?P<space>\s+)"
     r"|(?P<number>(?:\d[\d_]*\.?[\d_]*|\.\d[\d_]*)(?:[eE][+-]?\d+)?)"
+    r"|(?P<pair>not\s+in\b|is\s+not\b)"
     r"|(?P<name>[^\W\d²³¹⁰-⁹][^\W²³¹⁰-⁹]*)"
     r"|(?P<text>'[^'\\\n]*'|\"[^\"\\\n]*\")"
     r"|(?P<sign>\*\*|//|<=|>=|==|!=|=<|=>|<>|&&|\|\||:=|->|[-+*/%<>=!&|^~@.,:()\[\]{}≤≥≠×·⋅÷−∧∨¬²³])"
@@ -73,7 +74,7 @@ TOKEN = re.compile(
 @final
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A piece of the text; `kind` is number, name, text, sign or other."""
+    """A piece of the text; `kind` is number, pair, name, text, sign or other."""
 
     kind: str
     text: str
