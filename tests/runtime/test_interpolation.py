@@ -115,34 +115,46 @@ def test_a_column_has_the_same_bits_whatever_stands_beside_it(d: int, method: Me
         assert np.array_equal(beside[:, 3 - first], alone)
 
 
+def lookup_in_lanes(table: Table, points: Array, lanes: int, offset: int) -> Array:
+    """(m, lanes) by the lookup that integrators use; -1 in lanes that are not used."""
+    (used, d), m = points.shape, table.coefficients.shape[-1]
+    grid = grid_of(table.axes, table.method)
+    flat = np.concatenate([np.full(offset, np.nan), table.coefficients.reshape(-1)])
+    flat.setflags(write=False)
+    across = np.zeros((d, lanes))
+    across[:, :used] = points.T
+    out = np.full((m, lanes), -1.0)
+    arrays = grid.counts, grid.lows, grid.inverse_steps, grid.periodic, flat
+    cubic = table.method is Method.CUBIC
+    lookup_lanes(block_address(), cubic, d, m, *arrays, offset, across, used, out)
+    return out
+
+
 @every_method
 @every_size
 def test_lanes_have_the_bits_of_the_lookup(d: int, m: int, method: Method) -> None:
     table = random_table(d, m, method)
-    lanes, used, offset = 80, 77, 5
-    points = points_of(table.axes, lanes, np.random.default_rng(2))
-    grid = grid_of(table.axes, method)
-    flat = np.concatenate([np.full(offset, np.nan), table.coefficients.reshape(-1)])
-    out = np.full((m, lanes), -1.0)
+    points = points_of(table.axes, 77, np.random.default_rng(2))
 
-    lookup_lanes(
-        block_address(),
-        method is Method.CUBIC,
-        d,
-        m,
-        grid.counts,
-        grid.lows,
-        grid.inverse_steps,
-        grid.periodic,
-        flat,
-        offset,
-        np.ascontiguousarray(points.T),
-        used,
-        out,
-    )
+    out = lookup_in_lanes(table, points, lanes=80, offset=5)
 
-    assert np.array_equal(out[:, :used].T, lookup(table, points[:used]))
-    assert (out[:, used:] == -1.0).all()
+    assert np.array_equal(out[:, :77].T, lookup(table, points))
+    assert (out[:, 77:] == -1.0).all()
+
+
+@pytest.mark.parametrize("d", range(1, 6))
+def test_in_lanes_the_polynomials_of_the_edge_go_on_outside(d: int) -> None:
+    rng = np.random.default_rng(d)
+    axes = axes_of(d)
+    factors = rng.uniform(-1, 1, size=(2, d, 4))
+    table = tabulate(polynomial(factors, nodes_of(axes)), axes, Method.CUBIC)
+    widths = np.array([axis.high - axis.low for axis in axes])
+    points = points_of(axes, 70, rng) + widths * rng.integers(-1, 2, size=(70, d))
+
+    expected = polynomial(factors, points)
+
+    found = lookup_in_lanes(table, points, lanes=70, offset=0).T
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-12 * np.abs(expected).max())
 
 
 @every_method
