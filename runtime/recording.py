@@ -57,7 +57,7 @@ def recorded(rollout: Rollout, program: Program) -> bytes:
             "ended_at": repr(float(rollout.ended_at)),
         },
     )
-    writer.finish()
+    writer.finish()  # type: ignore[no-untyped-call]  # the library's
     return stream.getvalue()
 
 

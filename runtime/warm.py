@@ -4,19 +4,65 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runtime.code import Code
+from runtime.flow import flow_of
+from runtime.integrators import adaptive, fixed_steps
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
 from runtime.kernels.cache import is_warm, mark_warm
 from runtime.kernels.interpolate import block_address
-from runtime.program import Axis, Method
+from runtime.kernels.machine import machine_address
+from runtime.machine import evaluate
+from runtime.program import Axis, Field, Kind, Method, Origin, Program, Role, State, Unit
 
 __all__ = ["is_warm", "warm"]
 
 TABLE = tabulate(np.zeros((2, 1)), (Axis("x", 0.0, 1.0, 2, periodic=False),), Method.LINEAR)
 
+NO_MOTION = Program(
+    name="rest",
+    about="",
+    states=(
+        State(
+            *("x", Unit("1", 1.0), 0.0, 1.0, Role.BOTH, Kind.CONTINUOUS, 0.5),
+            closure=None,
+            values=(),
+            relates=("", ""),
+            about="",
+            origin="",
+        ),
+    ),
+    controls=(),
+    constants=(),
+    outputs=(),
+    field=Field(("x",), "formula", 0.0, (), (), (), (Code("0"),), ""),
+    fidelity=None,
+    bindings=(),
+    judge_when=None,
+    realizes=(),
+    feasibility=None,
+    source=Origin("", "", ""),
+)
+START = np.zeros((1, 1))
+TIMES = np.array([0.0, 1.0])
+
+
+def _step() -> object:
+    nothing = np.zeros((1, 1, 0)), np.zeros(0, dtype=np.int64)
+    return fixed_steps(flow_of(NO_MOTION), START, TIMES, *nothing)
+
+
+def _adapt() -> object:
+    return adaptive(flow_of(NO_MOTION), START, np.zeros(0), TIMES, 1e-6, 1e-6)
+
+
 KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("interpolation", block_address),
     ("table lookup", lambda: lookup(TABLE, [0.5])),
     ("table derivatives", lambda: lookup_jacobian(TABLE, [0.5])),
+    ("machine", machine_address),
+    ("expressions", lambda: evaluate([Code("x")], ("x",), START)),
+    ("fixed steps", _step),
+    ("adaptive steps", _adapt),
 )
 """Names, and small calls that compile; each kernel is compiled for one kind of arguments only."""
 
