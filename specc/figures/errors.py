@@ -82,7 +82,9 @@ def draw_error_map(report: Report, variable: VariableResult) -> Figure:
 def places_shown(report: Report) -> tuple[str, ...]:
     """The one or two variables over which errors are shown: the coverage's, where it has them."""
     first = [] if report.coverage is None else [axis.name for axis in report.coverage.axes]
-    moving = [name for name, values in report.places.items() if np.ptp(values) > 0.0]
+    moving = [
+        name for name, values in report.places.items() if values.size and np.ptp(values) > 0.0
+    ]
     known = [name for name in dict.fromkeys([*first, *moving]) if name in report.places]
     return tuple(known[:2])
 
@@ -113,14 +115,15 @@ def _tolerance_band(axes: Axes, tolerance: float) -> None:
 
 
 def _mean(axes: Axes, variable: VariableResult) -> None:
-    """The mean error with its confidence interval, beside the histogram's root."""
-    scale = variable.unit.scale
-    interval, mean = variable.mean_interval, variable.mean / scale
-    reach = [[mean - interval.low / scale], [interval.high / scale - mean]]
-    if not np.all(np.isfinite(reach)):
-        return
-    place = 0.9 * axes.get_xlim()[1]
-    axes.errorbar(place, mean, yerr=reach, fmt="o", color=VERMILION, capsize=3.5, markersize=4.0)
+    """The mean error with its confidence interval, beside the ends of the histogram's bars."""
+    low, mean, high = (
+        value / variable.unit.scale
+        for value in (variable.mean_interval.low, variable.mean, variable.mean_interval.high)
+    )
+    if np.all(np.isfinite((low, mean, high))):
+        place = 0.9 * axes.get_xlim()[1]
+        axes.plot([place, place], [low, high], "_-", color=VERMILION, markersize=8.0)
+        axes.plot(place, mean, "o", color=VERMILION, markersize=4.0)
 
 
 def _bins(errors: Array) -> int:

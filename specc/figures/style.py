@@ -57,6 +57,8 @@ LOOK: Final[dict[Any, Any]] = {
     "svg.hashsalt": "specc",
     "pdf.fonttype": 42,
     "path.simplify": True,
+    # Names come from strangers: a dollar sign in one is a dollar sign.
+    "text.parse_math": False,
 }
 
 METADATA: Final[dict[str, dict[str, str | None]]] = {

@@ -22,6 +22,7 @@ from tests.verifier.topology_scenes import (
     tabulated,
     van_der_pol,
 )
+from verifier.topology.classification import classified
 from verifier.topology.features import FixedPoint, PointKind, Portrait
 from verifier.topology.portrait import Detail, portrait
 
@@ -60,6 +61,12 @@ def test_van_der_pol_has_the_origin_with_its_eigenvalues(mu: float, kind: PointK
     assert point.at == pytest.approx([0.0, 0.0], abs=1e-12)
     assert point.kind is kind
     assert point.eigenvalues == pytest.approx(expected, abs=EIGENVALUES)
+
+
+def test_eigenvalues_that_only_rounding_makes_complex_are_real() -> None:
+    pair = (complex(1.0, 1e-9), complex(1.0, -1e-9))
+
+    assert classified(pair, is_map=False, rate=1.0, doubt=0.0) is PointKind.UNSTABLE_NODE
 
 
 def test_a_critically_damped_point_is_a_node_although_rounding_splits_its_eigenvalue() -> None:
@@ -150,6 +157,14 @@ def test_a_jump_across_zero_is_no_fixed_point() -> None:
     assert kinds(plane("x 0.1 add sign neg", "y neg")) == []
 
 
+def test_a_zero_at_the_edge_of_where_the_field_exists_has_no_eigenvalues() -> None:
+    (edge,) = seen(plane("x sqrt", "y neg")).fixed_points
+
+    assert edge.at == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert edge.kind is PointKind.DEGENERATE
+    assert edge.eigenvalues == ()
+
+
 def test_a_line_of_fixed_points_is_sampled_and_said() -> None:
     found = seen(plane("x neg", "x y mul"))
 
@@ -213,7 +228,7 @@ def test_a_map_that_only_rotates_has_a_center() -> None:
 
 
 def test_a_step_across_the_seam_is_no_fixed_point_of_a_periodic_map() -> None:
-    # A constant step of two radians: near the seam the displacement stays two, not two minus a turn.
+    # A step of two radians is one everywhere, also where it ends beyond the seam.
     state_ = state("angle", -math.pi, math.pi, kind=Kind.PERIODIC)
 
     assert kinds(behavior("turning", (state_,), ("angle 2 add",), every=1.0)) == []

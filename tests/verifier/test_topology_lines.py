@@ -61,6 +61,8 @@ def test_an_oscillators_trajectories_keep_their_energy_and_close() -> None:
     for path in portrait(OSCILLATOR).trajectories:
         energy = np.sum(path.points**2, axis=1)
         assert energy == pytest.approx(np.full(len(energy), energy[0]), rel=1e-6)
+        # Followed in both directions of time until each has closed: two turns of 2 pi seconds.
+        assert path.times[-1] - path.times[0] < 4.0 * math.pi + 0.1
 
 
 def test_trajectories_agree_with_an_independent_integration() -> None:
@@ -99,7 +101,9 @@ def test_the_manifolds_of_a_linear_saddle_are_its_eigenvectors() -> None:
         Course.STABLE_MANIFOLD
     ] * 2
     for path in manifolds:
-        slope = (root - 1.0) / 0.5 if path.course is Course.UNSTABLE_MANIFOLD else (-root - 1.0) / 0.5
+        slope = (
+            (root - 1.0) / 0.5 if path.course is Course.UNSTABLE_MANIFOLD else (-root - 1.0) / 0.5
+        )
         assert path.points[:, 1] == pytest.approx(slope * path.points[:, 0], abs=1e-6)
         ends = path.points if path.course is Course.UNSTABLE_MANIFOLD else path.points[::-1]
         assert np.abs(ends[0]).max() < 1e-3

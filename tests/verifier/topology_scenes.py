@@ -77,7 +77,7 @@ def behavior(
 
 
 def tabulated(program: Program, count: int, error: float) -> Program:
-    """The same behavior through one cubic table over its states, with controls at their defaults."""
+    """The same behavior through one cubic table over its states; controls at their defaults."""
     axes = tuple(
         Axis(s.name, s.low, s.high, count, s.kind is Kind.PERIODIC) for s in program.states
     )

@@ -21,7 +21,12 @@ ROUNDING = 1e-7
 
 
 def spectrum(J: Array) -> tuple[tuple[complex, ...], tuple[tuple[complex, ...], ...]]:
-    """Eigenvalues (largest real part first) and the rows of the matrix of eigenvectors."""
+    """Eigenvalues (largest real part first) and the rows of the matrix of eigenvectors.
+
+    None of either where J is not finite.
+    """
+    if not np.all(np.isfinite(J)):
+        return (), ()
     values, vectors = np.linalg.eig(J)
     order = np.lexsort((-values.imag, -values.real))
     return (

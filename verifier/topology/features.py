@@ -58,7 +58,7 @@ class FixedPoint:
     """A point where nothing on the axes moves.
 
     eigenvalues, vectors: (m,) and (m, m), columns, of the slice's Jacobian there: rates in 1/s,
-    multipliers per step for a map.
+    multipliers per step for a map. Empty where the field has no derivative.
     formula_eigenvalues: the same of the spec's own formula, None where the field has none.
     drifts: names of driven variables that are held although they would move here: the point is
     fixed in this slice only.

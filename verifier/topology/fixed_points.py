@@ -55,6 +55,8 @@ def _kind(
     rate: float,
 ) -> PointKind:
     """The type by the table; by the formula where the table's error leaves it open."""
+    if not eigenvalues:
+        return PointKind.DEGENERATE
     doubt = eigenvalue_doubt(J, view.resolution)
     kind = classified(eigenvalues, is_map=view.is_map, rate=rate, doubt=doubt)
     if of_formula is None or kind not in {PointKind.CENTER, PointKind.DEGENERATE}:
@@ -70,14 +72,15 @@ def _typical_rate(view: Slice, grid: Grid) -> float:
 def _is_singular_near(view: Slice, zeros: Array) -> list[bool]:
     """Whether the Jacobian's determinant changes sign within `BLUR` of each zero.
 
-    At a double zero it does, and a zero is never known better than that.
+    At a double zero it does, and a zero is never known better than that. So does a Jacobian that
+    does not exist, at the edge of where the field does.
     """
     m = len(view.axes)
     corners = np.array(list(product((-1.0, 1.0), repeat=m))) * BLUR * view.width
     around = zeros[:, None, :] + corners
     inside = np.clip(around, view.low, view.low + view.width)
     J = jacobians_at(view, np.where(view.periodic, around, inside))
-    sign = np.sign(np.linalg.det(J - (np.eye(m) if view.is_map else 0.0)))
+    sign = np.sign(np.linalg.det(np.nan_to_num(J - (np.eye(m) if view.is_map else 0.0))))
     return [bool(one.min() != one.max()) for one in sign]
 
 
