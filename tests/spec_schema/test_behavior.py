@@ -96,12 +96,10 @@ def test_every_key_is_described_by_a_sentence_and_an_example(
 @pytest.mark.parametrize(("model", "name"), ALL_FIELDS)
 def test_the_example_of_every_key_is_accepted(model: type[BaseModel], name: str) -> None:
     key = model.model_fields[name]
-    adapter: TypeAdapter[Any] = TypeAdapter(
-        Annotated[key.annotation, "as in the model", *key.metadata]
-    )
+    hint: Any = Annotated[key.annotation, "as in the model", *key.metadata]
 
     for example in key.examples or ():
-        adapter.validate_python(example)
+        TypeAdapter(hint).validate_python(example)
 
 
 def test_a_form_is_of_its_own_type() -> None:
@@ -165,6 +163,13 @@ def test_domains_may_be_quantities_and_expressions() -> None:
 
     assert isinstance(spec, BehaviorSpec)
     assert spec.state["x"].domain == ("-pi", "180 deg")
+
+
+@pytest.mark.parametrize("default", ["0", "1", "0.5", "2 km", "-0.0"])
+def test_a_default_on_a_limit_is_inside_and_a_quantity_is_not_judged_here(default: str) -> None:
+    control = f"control: {{a: {{unit: m, domain: [0, 1], default: {default}}}}}\n"
+
+    assert "a" in behavior(control + FORMULA).control
 
 
 def test_nothing_can_be_changed() -> None:

@@ -114,7 +114,9 @@ def test_a_byte_order_mark_moves_no_column(tmp_path: Path) -> None:
     with pytest.raises(SpecError) as caught:
         load(path)
 
-    assert caught.value.diagnostics[0].place == f"{path}:1:1"
+    assert [(found.code, found.place) for found in caught.value.diagnostics] == [
+        ("S102", f"{path}:1:1")
+    ]
 
 
 def test_windows_line_ends_move_no_line() -> None:
@@ -151,6 +153,23 @@ def test_six_mistakes_are_told_in_one_go() -> None:
         "S114",
         "S101",
     ]
+
+
+def test_a_key_without_a_value_is_told_once() -> None:
+    found = mistakes(GOOD.replace("horizon: 2 s", "horizon:").replace("role: both", "role:"))
+
+    assert [one.message for one in found] == [
+        "'role' has no value",
+        "'role' has no value",
+        "'horizon' has no value",
+    ]
+
+
+def test_a_message_repeats_only_the_beginning_of_a_long_text() -> None:
+    (found,) = mistakes(GOOD.replace("role: both", f"role: {'both' * 1000}", 1))
+
+    assert found.message.startswith("unknown role 'bothboth")
+    assert len(found.message) < 100
 
 
 def test_mistakes_inside_a_misspelt_key_are_told_under_its_own_name() -> None:
