@@ -62,22 +62,7 @@ def gap_notes(topic: str, times: Integers) -> list[str]:
     return [f"{topic}: {gaps}, the largest {steps[widest] / 1e9:.3g} s after {after:.4g} s"]
 
 
-def _one_run(times: Integers) -> Booleans:
-    """Which samples belong to the longest run of the clock.
-
-    That is a longest non-decreasing subsequence, and every sample that is merely late beside it.
-    """
-    kept = np.ones(times.size, dtype=np.bool_)
-    if not (np.diff(times) < -JUMP).any():
-        return kept
-    run = _longest_run(times)
-    before = np.searchsorted(run, np.arange(times.size), side="right") - 1
-    low = times[run[np.maximum(before, 0)]]
-    high = times[run[np.minimum(before + 1, run.size - 1)]]
-    return (times >= low - JUMP) & (times <= high + JUMP) | np.isin(np.arange(times.size), run)
-
-
-def _longest_run(times: Integers) -> Integers:
+def longest_run(times: Integers) -> Integers:
     """Rows of a longest non-decreasing subsequence (patience sorting, O(T log T))."""
     values = times.tolist()
     ends: list[int] = []
@@ -98,3 +83,18 @@ def _longest_run(times: Integers) -> Integers:
         chain.append(row)
         row = previous[row]
     return np.array(chain[::-1], dtype=np.int64)
+
+
+def _one_run(times: Integers) -> Booleans:
+    """Which samples belong to the longest run of the clock.
+
+    That is a longest non-decreasing subsequence, and every sample that is merely late beside it.
+    """
+    kept = np.ones(times.size, dtype=np.bool_)
+    if not (np.diff(times) < -JUMP).any():
+        return kept
+    run = longest_run(times)
+    before = np.searchsorted(run, np.arange(times.size), side="right") - 1
+    low = times[run[np.maximum(before, 0)]]
+    high = times[run[np.minimum(before + 1, run.size - 1)]]
+    return (times >= low - JUMP) & (times <= high + JUMP) | np.isin(np.arange(times.size), run)

@@ -110,7 +110,9 @@ def _field_diagnostic(
 def _require_stamps(path: Path, topics: Mapping[str, Samples]) -> None:
     faults = {topic: stamp_fault(samples) for topic, samples in topics.items()}
     problems = [
-        file_diagnostic(path, "V312", f"{topic}: {fault}", "take the log times instead (--clock log)")
+        file_diagnostic(
+            path, "V312", f"{topic}: {fault}", "take the log times instead (--clock log)"
+        )
         for topic, fault in faults.items()
         if fault
     ]

@@ -58,6 +58,16 @@ def test_a_cut_ros_1_bag_gives_what_is_before_the_cut(workshop: Any, share: floa
     assert trace.losses
 
 
+def test_a_torn_chunk_of_a_ros_1_bag_is_said(workshop: Any) -> None:
+    path = workshop.bag1(count=500)
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+
+    trace = workshop.read(path, x="/p.point.x")
+
+    assert {loss.cause for loss in trace.losses} == {"torn chunk", "file cut"}
+
+
 def test_a_corrupt_chunk_of_a_ros_1_bag_is_said(workshop: Any) -> None:
     path = workshop.bag1(Writer1.CompressionFormat.BZ2)
     data = bytearray(path.read_bytes())

@@ -248,6 +248,7 @@ def test_several_channels_of_one_topic_are_read_together(workshop: Any, make: An
     trace = workshop.read(workshop.mcap(notes), x="/a.x")
 
     assert values(trace) == list(range(20))
+    assert not any("out of order" in note for note in trace.notes)
 
 
 def test_a_channel_in_another_encoding_is_refused_by_name(workshop: Any, make: Any) -> None:

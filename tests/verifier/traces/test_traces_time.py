@@ -1,5 +1,6 @@
 """Times: which clock, in what order, with what gaps."""
 
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from runtime.program import Kind, Role
 from spec_schema.diagnostics import SpecError
-from verifier.traces.cleaning import order
+from verifier.traces.cleaning import longest_run, order
 from verifier.traces.read import read_trace
 from verifier.traces.trace import Trace
 
@@ -53,6 +54,27 @@ def test_when_the_clock_is_set_back_the_longest_run_is_kept() -> None:
 
     assert kept == [10.0, 10.1, 10.2, 10.3, 10.4]
     assert losses == {"clock set back": 3}
+
+
+def test_a_long_run_survives_a_clock_that_is_set_back() -> None:
+    first, second = np.arange(100.0, 130.0, 0.5), np.arange(0.0, 50.0, 0.5)
+
+    kept, losses = ordered(*first, *second)
+
+    assert kept == second.tolist()
+    assert losses == {"clock set back": first.size}
+
+
+@given(st.lists(st.integers(0, 20), max_size=12))
+def test_the_longest_run_is_the_longest_there_is(times: list[int]) -> None:
+    run = longest_run(np.array(times, dtype=np.int64))
+
+    chosen = [times[row] for row in run]
+    orders = (c for n in range(len(times), -1, -1) for c in combinations(times, n))
+    longest = next(len(c) for c in orders if list(c) == sorted(c))
+    assert (np.diff(run) > 0).all()
+    assert chosen == sorted(chosen)
+    assert len(chosen) == longest
 
 
 def test_late_samples_survive_beside_a_clock_that_is_set_back() -> None:
