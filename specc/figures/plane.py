@@ -163,9 +163,9 @@ def _arrow(axes: Axes, portrait: Portrait, path: Trajectory, color: str) -> None
 def _orbits(axes: Axes, portrait: Portrait) -> list[Entry]:
     for path in portrait.trajectories:
         axes.plot(
-            *shown(portrait.axes, path.points).T, "o", color=INK, markersize=1.4, mew=0.0, zorder=4
+            *shown(portrait.axes, path.points).T, "o", color=INK, markersize=2.2, mew=0.0, zorder=4
         )
-    dot = Line2D([], [], linestyle="none", marker="o", color=INK, markersize=2.0)
+    dot = Line2D([], [], linestyle="none", marker="o", color=INK, markersize=2.8)
     dot.set_label("orbit")
     return [(dot,)] if portrait.trajectories else []
 

@@ -31,6 +31,7 @@ def draw_portrait(portrait: Portrait) -> Figure:
             borderaxespad=0.0,
         )
         _title(figure, portrait)
+        _notes(figure, portrait)
     return figure
 
 
@@ -40,6 +41,13 @@ def _title(figure: Figure, portrait: Portrait) -> None:
     lines = textwrap.wrap(", ".join(map(_held, portrait.held)), 92)
     shown = lines if len(lines) < 3 else [lines[0], lines[1] + " …"]
     figure.text(0.1, 0.928, "\n".join(shown), fontsize=8.5, color=FAINT, va="top")
+
+
+def _notes(figure: Figure, portrait: Portrait) -> None:
+    """What a reader must know beside the picture, below it."""
+    lines = [line for note in portrait.notes for line in textwrap.wrap(note, 92)]
+    if lines:
+        figure.text(0.1, 0.012, "\n".join(lines), fontsize=8.5, color=FAINT, va="top")
 
 
 def _held(held: Held) -> str:

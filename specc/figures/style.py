@@ -26,6 +26,9 @@ SKY: Final = "#56b4e9"
 
 Format: TypeAlias = Literal["svg", "png", "pdf"]
 
+Picture: TypeAlias = Figure
+"""A drawn figure, for those who pass it on and need not know matplotlib."""
+
 FONT: Final = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],

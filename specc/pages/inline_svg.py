@@ -4,9 +4,8 @@ import re
 from typing import Final
 
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
-from specc.figures.style import BLUE, FAINT, GREEN, INK, PAPER, VERMILION, rendered_svg
+from specc.figures.style import BLUE, FAINT, GREEN, INK, PAPER, VERMILION, Picture, rendered_svg
 
 COLORS: Final = {
     INK: "var(--ink)",
@@ -19,7 +18,7 @@ COLORS: Final = {
 """The style sheet gives each of them two values."""
 
 
-def inline_svg(figure: Figure, name: str, label: str) -> Markup:
+def inline_svg(figure: Picture, name: str, label: str) -> Markup:
     """`figure` as an `<svg>` element; `name` keeps its ids apart from those of other figures.
 
     `label` says what it shows to those who can't see it.

@@ -9,12 +9,12 @@ from typing import Final
 
 import jinja2
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from specc import __version__
 from specc.figures.coverage import draw_coverage
 from specc.figures.errors import draw_error_map, draw_errors, places_shown
 from specc.figures.quantities import number, quantity, seconds
+from specc.figures.style import Picture
 from specc.figures.verdicts import draw_verdicts
 from specc.figures.windows import draw_windows
 from specc.pages.inline_svg import inline_svg
@@ -119,7 +119,7 @@ def _part(report: Report, index: int, variable: VariableResult) -> VariablePart:
     )
 
 
-def _plot(figure: Figure, name: str, caption: str) -> Plot:
+def _plot(figure: Picture, name: str, caption: str) -> Plot:
     return Plot(inline_svg(figure, name, caption), caption)
 
 

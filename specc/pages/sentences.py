@@ -45,7 +45,8 @@ def how_to_read_errors(report: Report, variable: VariableResult) -> str:
     """The caption of the errors over time."""
     return (
         f"Error of {variable.name} {seconds(report.horizon)} into each window, over the trace"
-        " (left) and counted (right). The green band is the tolerance. The orange mark is the"
+        " (left) and counted (right). The green band is the tolerance; the judgement is of all"
+        " windows together, so single ones may lie outside. The orange mark is the"
         f" mean with its {percent(report.confidence)} confidence interval: away from zero, the"
         " robot errs to one side. A drift or steps along the trace mean that something changed."
     )
