@@ -13,7 +13,6 @@ from specc.figures.axes_of_states import split_at_seams
 from specc.figures.portrait import draw_portrait
 from specc.figures.style import Format, rendered
 from tests.verifier.topology_scenes import (
-    HOPF,
     OSCILLATOR,
     behavior,
     control,
@@ -51,7 +50,7 @@ def legend(program: Program) -> list[str]:
 @pytest.mark.parametrize(
     "program",
     [
-        HOPF,
+        van_der_pol(),
         OSCILLATOR,
         ANGLES,
         LOGISTIC,
@@ -65,7 +64,7 @@ def test_every_portrait_can_be_drawn(program: Program) -> None:
     assert draw_portrait(portrait(program, detail=SMALL)).axes
 
 
-@pytest.mark.parametrize("program", [van_der_pol(), pendulum(), henon()], ids=lambda p: p.name)
+@pytest.mark.parametrize("program", [pendulum(), henon()], ids=lambda p: p.name)
 def test_the_same_portrait_gives_the_same_bytes(program: Program) -> None:
     found = portrait(program, detail=SMALL)
 
@@ -77,7 +76,7 @@ def test_the_same_portrait_gives_the_same_bytes(program: Program) -> None:
 
 @pytest.mark.parametrize(("form", "magic"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_other_formats_are_deterministic_too(form: Format, magic: bytes) -> None:
-    found = portrait(OSCILLATOR, detail=SMALL)
+    found = portrait(line("x neg"), detail=SMALL)
 
     first, second = (rendered(draw_portrait(found), form, dpi=60) for _ in range(2))
 
@@ -116,7 +115,7 @@ def test_the_title_names_the_behavior_and_what_is_held() -> None:
 def test_drawing_leaves_matplotlibs_settings_alone() -> None:
     before = dict(rcParams)
 
-    rendered(draw_portrait(portrait(OSCILLATOR, detail=SMALL)), "svg")
+    rendered(draw_portrait(portrait(line("x neg"), detail=SMALL)), "svg")
 
     assert dict(rcParams) == before
 

@@ -107,8 +107,8 @@ def test_quantities_are_in_the_users_units(page: str) -> None:
     assert "0.1 m" in page
 
 
-def test_hostile_texts_stay_texts() -> None:
-    honest = read(report_page(report(cells=coverage(2))))
+def test_hostile_texts_stay_texts(page: str) -> None:
+    honest = read(page)
     hostile_page = report_page(report(cells=coverage(2), word=HOSTILE, heading=f"h{HOSTILE}"))
     hostile = read(hostile_page)
 
@@ -125,7 +125,9 @@ def test_hostile_texts_stay_texts() -> None:
 
 @pytest.mark.parametrize("verdict", list(Verdict))
 def test_every_verdict_has_its_page(verdict: Verdict) -> None:
-    assert f'class="verdict {verdict}"' in report_page(report(verdict, windows=4))
+    made = replace(report(verdict), variables=())
+
+    assert f'class="verdict {verdict}"' in report_page(made)
 
 
 def test_a_report_that_judged_nothing_still_has_a_page() -> None:
@@ -146,5 +148,7 @@ def test_a_variable_without_windows_has_no_figures_but_a_row() -> None:
     assert made.tags.count("figure") == 1
 
 
-def test_the_same_report_gives_the_same_page(page: str) -> None:
-    assert report_page(report(cells=coverage(2))) == page
+def test_the_same_report_gives_the_same_page() -> None:
+    made = replace(report(), variables=report().variables[:1])
+
+    assert report_page(made) == report_page(made)
