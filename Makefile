@@ -26,6 +26,7 @@ check: .venv/ready ## format, lint, types, import contracts, tests
 	$(BIN)/ruff format --check $(SOURCES)
 	$(BIN)/ruff check $(SOURCES)
 	$(BIN)/mypy
+	$(BIN)/mypy tests/typing/api.py
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n auto
 

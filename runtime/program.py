@@ -300,8 +300,11 @@ class Program:
     @property
     def register(self) -> tuple[str, ...]:
         """The names of everything that code may read: states, controls, constants."""
-        named = (*self.states, *self.controls, *self.constants)
-        return tuple(part.name for part in named)
+        return (
+            *(state.name for state in self.states),
+            *(control.name for control in self.controls),
+            *(constant.name for constant in self.constants),
+        )
 
     @property
     def driven(self) -> tuple[int, ...]:

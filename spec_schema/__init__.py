@@ -1,1 +1,1 @@
-"""From YAML text to checked, frozen data: source, places, diagnostics, models, units, expressions."""
+"""From YAML text to checked data: source, places, diagnostics, models, units, expressions."""

@@ -109,13 +109,14 @@ class Fidelity(StrictModel):
     )
     region: Mapping[Name, Domain] = Field(
         default={},
-        description="Where in phase space it must have been seen; without it, the whole domain.",
+        description="Where in phase space it must have been seen; without it, the verdict holds "
+        "where the robot was, and the report says how much of the domain that is.",
         examples=[{"x": [-1.6, 1.6]}],
     )
     coverage: Share = Field(
         default=0.6,
         description="The share of the region's cells that a recording must visit for a PASS, above "
-        "0 and at most 1.",
+        "0 and at most 1. Without a region nothing is asked.",
         examples=[0.6],
     )
 

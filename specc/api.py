@@ -9,15 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias, final
 
-from runtime.artifact import ArtifactError, to_bytes
-from runtime.artifact import read as read_artifact
-from runtime.simulate import simulate as run
-
 from compiler.check import check as check_file
 from compiler.compile import Compiled, compile_file
 from compiler.dump import dump
+from runtime.artifact import ArtifactError, to_bytes
+from runtime.artifact import read as read_artifact
 from runtime.program import Program
 from runtime.rollout import Rollout
+from runtime.simulate import simulate as run
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import load
@@ -29,6 +28,7 @@ from verifier.fidelity.verify import verify as judge
 from verifier.report.report import Report
 from verifier.topology.features import Portrait
 from verifier.topology.portrait import portrait as look
+from verifier.topology.slices import SliceError
 from verifier.traces.read import read_trace
 
 __all__ = [
@@ -46,7 +46,6 @@ __all__ = [
     "load_program",
     "portrait",
     "simulate",
-    "spec_files",
     "verify",
 ]
 
@@ -62,18 +61,6 @@ class Verification:
 
     found: Found
     report: Report
-
-
-def spec_files(paths: Sequence[Path]) -> tuple[Path, ...]:
-    """The specs among files and folders; a folder stands for all its .yaml files, recursively."""
-    found: list[Path] = []
-    for path in paths:
-        if path.is_dir():
-            inside = (*path.rglob("*.yaml"), *path.rglob("*.yml"))
-            found.extend(p for p in sorted(inside) if ".venv" not in p.parts)
-        else:
-            found.append(path)
-    return tuple(dict.fromkeys(found))
 
 
 def check(path: Path | str) -> tuple[Diagnostic, ...]:
@@ -126,13 +113,14 @@ def simulate(
     Raises:
         SpecError: a name that it does not have, or a value outside its domain.
     """
-    return run(
-        program,
-        settings_for(program.states, start or {}, "state"),
-        seconds(duration),
-        settings_for(program.controls, controls or {}, "control"),
-        None if every is None else seconds(every),
-    )
+    begin = settings_for(program.states, start or {}, "state")
+    held = settings_for(program.controls, controls or {}, "control")
+    step = None if every is None else seconds(every)
+    try:
+        return run(program, begin, seconds(duration), held, step)
+    except ValueError as error:
+        path = Path(program.source.file)
+        raise _fault("V342", path, str(error), "see `specc simulate --help`") from error
 
 
 def portrait(
@@ -145,7 +133,12 @@ def portrait(
     Raises:
         SpecError: an axis or a name that it does not have, or a value outside its domain.
     """
-    return look(program, None if axes is None else tuple(axes), si_settings(program, held or {}))
+    try:
+        names = None if axes is None else tuple(axes)
+        return look(program, names, si_settings(program, held or {}))
+    except SliceError as error:
+        path = Path(program.source.file)
+        raise _fault("V346", path, str(error), "see `specc portrait --help`") from error
 
 
 def verify(
@@ -170,7 +163,8 @@ def _without_running(path: Path) -> Program:
         loaded = load(path)
         if isinstance(loaded.spec, BehaviorSpec) and loaded.spec.field.module is not None:
             message = "this field is Python code, and verify runs nobody's code"
-            remedy = f"compile it first, then name the artifact: specc compile {path} && specc verify TRACE --spec {loaded.spec.name}.specc"
+            name = loaded.spec.name
+            remedy = f"specc compile {path}, then specc verify TRACE --spec {name}.specc"
             raise SpecError([loaded.error("V336", ("field", "module"), message, remedy, key=True)])
     return load_program(path)
 

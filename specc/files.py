@@ -1,5 +1,6 @@
-"""Files are written whole or not at all."""
+"""Files: which are specs, and how one is written whole or not at all."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 
@@ -12,3 +13,15 @@ def write_atomically(path: Path, data: bytes) -> None:
         beside.replace(path)
     finally:
         beside.unlink(missing_ok=True)
+
+
+def spec_files(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """The specs among files and folders; a folder stands for all its .yaml files, recursively."""
+    found: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            inside = (*path.rglob("*.yaml"), *path.rglob("*.yml"))
+            found.extend(p for p in sorted(inside) if ".venv" not in p.parts)
+        else:
+            found.append(path)
+    return tuple(dict.fromkeys(found))

@@ -5,19 +5,18 @@ import io
 import json
 from pathlib import Path
 
-from runtime.recording import recorded
-from verifier.report.report_json import as_json as report_json
-from verifier.report.report_text import as_text as report_text
-
 from runtime.program import Program
+from runtime.recording import recorded
 from runtime.rollout import Rollout
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from specc.api import Verification
 from specc.figures.portrait import draw_portrait
-from specc.figures.style import saved
+from specc.figures.style import rendered
 from specc.files import write_atomically
 from specc.pages.report_page import report_page
+from verifier.report.record import as_json as report_json
+from verifier.report.text import as_text as report_text
 from verifier.topology.features import Portrait
 from verifier.topology.portrait_json import as_json as portrait_json
 
@@ -39,8 +38,12 @@ def draw(portrait: Portrait, path: Path) -> None:
     match suffix:
         case ".json":
             write_atomically(path, _json_bytes(portrait_json(portrait)))
-        case ".svg" | ".png" | ".pdf":
-            write_atomically(path, saved(draw_portrait(portrait), suffix[1:]))
+        case ".svg":
+            write_atomically(path, rendered(draw_portrait(portrait), "svg"))
+        case ".png":
+            write_atomically(path, rendered(draw_portrait(portrait), "png"))
+        case ".pdf":
+            write_atomically(path, rendered(draw_portrait(portrait), "pdf"))
         case _:
             raise _unknown(path, ".svg, .png, .pdf, .json")
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import final
 
 from runtime.artifact import ArtifactError, from_bytes
-
 from runtime.program import Program
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import load
@@ -104,9 +103,9 @@ def _refuse_other_text(trace: Path, program: Program, project: _Project) -> None
             raise _fault(
                 "V333",
                 trace,
-                f"the trace carries spec '{program.name}' with sha256 {_short(program)}, the project's "
-                f"{path} has {digest[:12]}: the robot was recorded under another spec",
-                f"judge it by one of them: --spec {path}, or the attached one after moving {path} away",
+                f"the trace carries spec '{program.name}' with sha256 {_short(program)}, the "
+                f"project's {path} has {digest[:12]}: the robot was recorded under another spec",
+                f"name the one to judge by: --spec {path}, or the .specc of the attached one",
             )
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Annotated
 
-import click
 import typer
+from typer.exceptions import TyperException
 
 import specc
 from spec_schema.diagnostics import SpecError
@@ -67,10 +67,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except SpecError as error:
         show_diagnostics(error.diagnostics)
         return Status.BAD_INPUT
-    except click.exceptions.Abort:
+    except typer.Abort:
         raise KeyboardInterrupt from None
-    except click.ClickException as error:
-        error.show()
+    except TyperException as error:
+        say(f"specc: {error}", "bold red")
+        say("see `specc --help`, or `specc COMMAND --help` for a command's options and examples")
         return Status.BAD_INPUT
     except OSError as error:
         say(f"{error.filename}: {error.strerror}" if error.filename else str(error), "bold red")

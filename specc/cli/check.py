@@ -37,10 +37,11 @@ def check(
 
     `specc check patrol.yaml --format json`
     """
-    from specc import api
+    from compiler.check import check as check_file
+    from specc.files import spec_files
 
-    files = api.spec_files(paths)
-    found = tuple(d for file in files for d in api.check(file))
+    files = spec_files(paths)
+    found = tuple(d for file in files for d in check_file(file))
     failed = any(d.severity == "error" for d in found)
     match form:
         case CheckFormat.JSON:

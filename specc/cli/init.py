@@ -41,12 +41,17 @@ def init(
         print_text(beginnings.list_templates())
         return
     if log is not None:
-        inventory = beginnings.inventory(log)
-        print_text(beginnings.describe(inventory))
-        text = beginnings.spec_for(inventory, name or beginnings.name_for(log))
+        from specc.first_spec import spec_for
+        from specc.inventory_text import describe
+        from verifier.traces.inventory import inspect
+
+        inventory = inspect(log)
+        print_text(describe(inventory))
+        name = beginnings.identifier(name or log.stem)
+        text = spec_for(inventory, name)
     else:
         text = beginnings.from_template(template, name or template)
-    path = output or Path(f"{name or (beginnings.name_for(log) if log else template)}.yaml")
+    path = output or Path(f"{name or template}.yaml")
     if path.exists():
         raise typer.BadParameter(f"{path} exists already; name another file with -o")
     write_atomically(path, text.encode())

@@ -54,10 +54,9 @@ def verify(
 
     `specc verify drive.mcap --format json > verdict.json`
     """
-    from verifier.report.report_json import as_json
-    from verifier.report.report_text import as_text
-
     from specc import api
+    from verifier.report.record import as_json
+    from verifier.report.text import as_text
 
     warmed()
     verification = api.verify(trace, spec, clock.value)

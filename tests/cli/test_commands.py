@@ -1,0 +1,186 @@
+"""The commands as a user runs them: exit statuses, standard output, files."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from specc.cli import main
+
+ROOT = Path(__file__).parents[2]
+SPECS = ROOT / "specs"
+VDP = str(SPECS / "van_der_pol.yaml")
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def result(capsys: pytest.CaptureFixture[str]) -> object:
+    """What standard output holds, as JSON."""
+    return json.loads(capsys.readouterr().out)
+
+
+def test_check_is_content_with_the_library(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(SPECS)]) == 0
+    assert "without mistakes" in capsys.readouterr().err
+
+
+def test_check_lists_mistakes_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    bad = ROOT / "tests" / "golden" / "bad" / "dimension_sum.yaml"
+
+    assert main(["check", str(bad), "--format", "json"]) == 2
+    [found] = result(capsys)
+    assert found.keys() == {
+        "code", "severity", "message", "file", "line", "column", "end_line", "end_column",
+        "path", "help",
+    }  # fmt: skip
+    assert (found["code"], found["line"], found["column"]) == ("S141", 14, 16)
+    assert found["path"] == "$.field.formula.x"
+
+
+def test_check_annotates_for_github(capsys: pytest.CaptureFixture[str]) -> None:
+    bad = ROOT / "tests" / "golden" / "bad" / "dimension_sum.yaml"
+
+    assert main(["check", str(bad), "--format", "github"]) == 2
+    assert capsys.readouterr().out.startswith("::error file=")
+
+
+def test_compile_writes_the_same_bytes_twice(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["compile", VDP, "-o", "a.specc", "--format", "json"]) == 0
+    first = result(capsys)
+    assert main(["compile", VDP, "-o", "b.specc"]) == 0
+
+    assert Path("a.specc").read_bytes() == Path("b.specc").read_bytes()
+    assert first["artifact"] == "a.specc"
+    for table in first["tables"]:
+        assert table["error_bound"] <= table["tolerance"]
+        assert len(table["shape"]) == len(table["axes"])
+
+
+def test_a_damaged_artifact_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["compile", VDP, "-o", "whole.specc"])
+    data = Path("whole.specc").read_bytes()
+    Path("cut.specc").write_bytes(data[: len(data) // 2])
+    Path("flipped.specc").write_bytes(data[:3000] + bytes([data[3000] ^ 1]) + data[3001:])
+
+    for name in ("cut.specc", "flipped.specc"):
+        assert main(["portrait", name, "--format", "json"]) == 2
+    assert "V335" in capsys.readouterr().err
+
+
+def test_portrait_gives_its_fixed_points_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["portrait", VDP, "--set", "mu=0.5", "--format", "json"]) == 0
+    [point] = result(capsys)["fixed_points"]
+
+    assert point["kind"] == "unstable focus"
+    assert point["at"] == pytest.approx({"x": 0.0, "v": 0.0}, abs=1e-9)
+    for pair in point["eigenvalues"]:
+        assert (pair[0], abs(pair[1])) == pytest.approx((0.25, (1.0 - 0.25**2) ** 0.5), abs=1e-6)
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf", "json"])
+def test_portrait_draws_in_every_format(suffix: str) -> None:
+    assert main(["portrait", str(SPECS / "keep_left.yaml"), "-o", f"p.{suffix}"]) == 0
+    assert Path(f"p.{suffix}").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("name", ["van_der_pol", "phototaxis", "line_steps", "corridor"])
+def test_a_recording_verifies_against_the_spec_that_it_carries(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (SPECS / f"{name}.yaml").read_text()
+    if "fidelity:" not in text:
+        driven = {"line_steps": "offset: 1 cm", "corridor": "offset: 1 cm"}[name]
+        text += f"fidelity: {{tolerance: {{{driven}}}, horizon: 1 s}}\n"
+    Path("spec.yaml").write_text(text)
+    assert main(["simulate", "spec.yaml", "-d", "12", "--every", "0.1", "-o", "run.mcap"]) == 0
+    capsys.readouterr()
+
+    assert main(["verify", "run.mcap", "--format", "json"]) == 0
+    verdict = result(capsys)
+    assert verdict["verdict"] == "pass"
+    for variable in verdict["variables"].values():
+        for horizon in variable["horizons"]:
+            assert horizon.keys() >= {"horizon", "rmse", "tolerance", "within"}
+    assert {"coverage", "losses", "spec", "trace"} <= verdict.keys()
+
+
+def test_simulate_says_where_a_run_left_the_domain(capsys: pytest.CaptureFixture[str]) -> None:
+    run = ["simulate", VDP, "--start", "x=4", "--start", "v=8", "--format", "json"]
+
+    assert main(run) == 0
+    record = result(capsys)
+    assert record["ending"] == "left domain"
+    assert "x" in record["detail"]
+
+
+def test_verify_writes_reports(capsys: pytest.CaptureFixture[str]) -> None:
+    trace = str(SPECS / "recordings" / "scitos" / "wall_following.csv")
+    run = ["verify", trace, "--spec", str(SPECS / "keep_left.yaml")]
+    wanted = ["r.html", "r.json", "r.txt"]
+
+    assert main([*run, *(part for name in wanted for part in ("-o", name))]) == 0
+    assert "PASS" in capsys.readouterr().out
+    assert json.loads(Path("r.json").read_text())["verdict"] == "pass"
+    assert "http" not in Path("r.html").read_text().replace("http://www.w3.org", "")
+
+
+def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
+    trace = str(SPECS / "recordings" / "scitos" / "wall_following.csv")
+
+    assert main(["verify", trace, "--spec", str(SPECS / "circling.yaml")]) == 2
+    assert "V336" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["simulate", VDP, "--start", "y=1"], "V341"),
+        (["simulate", VDP, "--start", "x=40"], "V342"),
+        (["simulate", VDP, "--start", "x=1 m"], "V342"),
+        (["simulate", VDP, "-d", "-3"], "V342"),
+        (["simulate", str(SPECS / "line_steps.yaml"), "--every", "0.03"], "V342"),
+        (["simulate", VDP, "-o", "run.txt"], "V345"),
+        (["portrait", VDP, "--axes", "x,w"], "V346"),
+        (["portrait", VDP, "-o", "p.bmp"], "V345"),
+        (["verify", "nowhere.mcap", "--spec", VDP], "V301"),
+        (["verify", VDP], "V334"),
+        (["init", "--template", "van_der_poll"], "V343"),
+        (["check", "nowhere.yaml"], "S015"),
+        (["simulate", VDP, "--start", "x"], "NAME=VALUE"),
+        (["frobnicate"], "frobnicate"),
+    ],
+)
+def test_bad_usage_is_told_and_exits_with_2(
+    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_init_writes_a_spec_that_checks(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", "rhythm"]) == 0
+    assert main(["check", "rhythm.yaml"]) == 0
+    assert "name: rhythm" in Path("rhythm.yaml").read_text()
+    capsys.readouterr()
+    assert main(["init", "rhythm"]) == 2, "a file that exists is not overwritten"
+
+
+def test_init_from_a_log_lists_it_and_writes_a_spec_that_verifies(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    log = str(SPECS / "recordings" / "husky" / "husky.mcap")
+
+    assert main(["init", "drive", "--from", log]) == 0
+    listing = capsys.readouterr().out
+    assert "/imu/data" in listing
+    assert "nav_msgs/msg/Odometry" in listing
+    assert main(["check", "drive.yaml"]) == 0
+    assert main(["verify", log, "--spec", "drive.yaml"]) in {0, 1, 4}
+
+
+def test_schema_prints_json_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema", "behavior"]) == 0
+    assert result(capsys)["$schema"].endswith("2020-12/schema")
