@@ -7,7 +7,6 @@ pace: (5, LANES) per lane its trajectory, its next sample, how many steps were t
 first rates are still to be worked out, whether the last step was rejected.
 """
 
-
 import math
 from typing import Final, NamedTuple
 
@@ -17,6 +16,7 @@ from runtime.arrays import Array, Integers
 from runtime.kernels.blocks import (
     COMPLETED,
     DIVERGED,
+    LARGEST,
     LEFT_DOMAIN,
     STAGES,
     TOO_MANY_STEPS,
@@ -74,6 +74,8 @@ DENSE: Final = np.array(
 SAFETY, MEMORY, SHRINK, GROW = 0.9, 0.04, 0.2, 10.0
 EXPONENT: Final = 0.2 - 0.75 * MEMORY
 LEAST_ERROR: Final = 1e-4
+EDGE: Final = 1e-9
+"""Part of a domain's width that counts as its edge, where steps cannot cross it."""
 
 
 TRAJECTORY, SAMPLE, TRIES, FRESH, REJECTED = range(5)
@@ -139,7 +141,7 @@ def _take_up(
     states: Array,
     ended: Array,
 ) -> None:
-    """Begin trajectory b in a lane; it ends at once outside the domain or where T = 1."""
+    """Begin trajectory b in a lane; it ends at once outside the domain or where no time passes."""
     load(w, at, lane, start, b)
     w[at.t, lane] = times[0]
     w[at.error, lane] = LEAST_ERROR
@@ -153,11 +155,13 @@ def _take_up(
         _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
         note_exit(variable, w[variable, lane], domain, ended, b)
         return
-    for i in range(at.n):
-        states[b, 0, i] = w[at.x + i, lane]
-    pace[SAMPLE, lane] = 1
-    if times.shape[0] == 1:
-        _stop(w, at, pace, lane, COMPLETED, states, ended)
+    for s in range(times.shape[0]):
+        if times[s] != times[0]:
+            return
+        for i in range(at.n):
+            states[b, s, i] = w[at.x + i, lane]
+        pace[SAMPLE, lane] = s + 1
+    _stop(w, at, pace, lane, COMPLETED, states, ended)
 
 
 @part
@@ -303,9 +307,39 @@ def _judge(
         w[at.h, lane] = h / shrink if shrink < 1.0 / SHRINK else h * SHRINK
         pace[REJECTED, lane] = 1
         if w[at.t, lane] + 0.1 * w[at.h, lane] == w[at.t, lane]:
-            _stop(w, at, pace, lane, DIVERGED, states, ended)
+            _stop_stuck(w, at, pace, domain, moving, lane, states, ended)
     if w[at.alive, lane] != 0.0 and pace[TRIES, lane] >= aim.most_steps:
         _stop(w, at, pace, lane, TOO_MANY_STEPS, states, ended)
+
+
+@part
+def _stop_stuck(
+    w: Array,
+    at: Places,
+    pace: Integers,
+    domain: Array,
+    moving: Integers,
+    lane: int,
+    states: Array,
+    ended: Array,
+) -> None:
+    """End a lane that cannot step on: at an edge of the domain on its way out, or within it.
+
+    A formula may have no value beyond its domain (the root of a negative number), so that no step
+    across the edge succeeds; what comes so near to it leaves the domain there.
+    """
+    for j in range(moving.shape[0]):
+        i = moving[j]
+        low, high, x = domain[0, i], domain[1, i], w[at.x + i, lane]
+        rate = w[at.k + i, lane] * w[at.h, lane]
+        near = EDGE * (high - low)
+        if low == -LARGEST:
+            continue
+        if (rate < 0.0 and x - low < near) or (rate > 0.0 and high - x < near):
+            _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
+            note_exit(i, x, domain, ended, pace[TRAJECTORY, lane])
+            return
+    _stop(w, at, pace, lane, DIVERGED, states, ended)
 
 
 @part

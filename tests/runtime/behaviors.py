@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
+from runtime.arrays import Array
 from runtime.code import Code
 from runtime.interpolation import tabulate
 from runtime.program import (
@@ -27,9 +27,9 @@ ONE = Unit("1", 1.0)
 NOWHERE = "spec.yaml:1:1"
 
 
-def state(name: str, low: float, high: float, **changes: object) -> State:
-    """A continuous state that is sensed and driven, unless changed."""
-    plain = State(
+def state(name: str, low: float, high: float) -> State:
+    """A continuous state that is sensed and driven."""
+    return State(
         name=name,
         unit=ONE,
         low=low,
@@ -43,7 +43,6 @@ def state(name: str, low: float, high: float, **changes: object) -> State:
         about="",
         origin=NOWHERE,
     )
-    return replace(plain, **changes)
 
 
 def control(name: str, low: float, high: float, default: float) -> Control:
@@ -98,7 +97,7 @@ def van_der_pol(reach: float = 6.0) -> Program:
 
 def tabulated(
     program: Program,
-    values: Callable[..., np.ndarray],
+    values: Callable[..., Array],
     axes: tuple[Axis, ...],
     method: Method,
     coefficient: str = "1",
@@ -113,18 +112,12 @@ def tabulated(
     return replace(program, field=replace(program.field, tables=(table,), terms=terms))
 
 
-@pytest.fixture
-def oscillator() -> Program:
-    return van_der_pol()
-
-
-@pytest.fixture
-def tabulated_oscillator() -> Program:
-    """Van der Pol at mu = 1 through a cubic table, which a cubic polynomial loses nothing in."""
-    axes = (Axis("x", -6.0, 6.0, 33, periodic=False), Axis("v", -6.0, 6.0, 33, periodic=False))
+def tabulated_van_der_pol(method: Method = Method.CUBIC, count: int = 33) -> Program:
+    """Van der Pol at mu = 1; a cubic table loses nothing of a cubic polynomial."""
+    axes = tuple(Axis(name, -4.0, 4.0, count, periodic=False) for name in ("x", "v"))
     return tabulated(
-        van_der_pol(),
+        van_der_pol(4.0),
         lambda x, v: np.stack([v, (1 - x**2) * v - x], axis=-1),
         axes,
-        Method.CUBIC,
+        method,
     )
