@@ -41,6 +41,8 @@ def results_of(
     """The judgement of every driven state that has a tolerance."""
     places = places_of(program, study)
     where = np.stack([places[axis.name] for axis in axes], axis=-1)
+    judged = {each.state.name for each in study.plan.samples}
+    assert judged >= fidelity.tolerance.keys(), "only driven states have a tolerance"
     return tuple(
         _result(study, j, fidelity.tolerance[each.state.name], axes, where)
         for j, each in enumerate(study.plan.samples)

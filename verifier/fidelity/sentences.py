@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runtime.arrays import Booleans
+from runtime.arrays import Array, Booleans
 from runtime.program import Unit
 from verifier.fidelity.study import Study
 from verifier.report.report import Coverage, Interval, RegionMean, Standing, VariableResult
@@ -48,10 +48,7 @@ def worst(result: VariableResult, units: dict[str, Unit]) -> list[str]:
 
 def proportion(study: Study, result: VariableResult) -> list[str]:
     """Whether the robot simply moves more, or less, than predicted."""
-    j = [each.state.name for each in study.plan.samples].index(result.name)
-    errors = study.shots.errors[-1][j]
-    kept = np.isfinite(errors.mean) & ~study.shots.is_lost
-    error, moved = errors.mean[kept], errors.moved[kept]
+    error, moved = _declared(study, result)
     if not np.any(moved) or not np.any(error):
         return []
     slope = float(np.sum(error * moved) / np.sum(moved**2))
@@ -74,6 +71,21 @@ def within(result: VariableResult) -> str:
         f" {number(figure.horizon)} s: it departs by {quantity(figure.departure, unit)}, at most"
         f" {quantity(figure.interval.high, unit)} (95 %)"
     )
+
+
+def unmoved(study: Study, result: VariableResult) -> list[str]:
+    """Whether a spec in which nothing moves would have passed as well."""
+    error, moved = _declared(study, result)
+    way = float(np.sqrt(np.mean((error + moved) ** 2)))
+    if way > result.tolerance:
+        return []
+    return [
+        (
+            f"{result.name} itself moves by {quantity(way, result.unit)} in"
+            f" {number(result.declared.horizon)} s here: a spec in which it stays where it is would"
+            " pass as well"
+        )
+    ]
 
 
 def undecided(result: VariableResult) -> str:
@@ -150,6 +162,14 @@ def where(region: RegionMean, units: dict[str, Unit]) -> str:
     return ", ".join(
         f"{name} from {span(low, high, units[name])}" for name, (low, high) in region.bounds.items()
     )
+
+
+def _declared(study: Study, result: VariableResult) -> tuple[Array, Array]:
+    """Errors at the declared horizon, and predicted ways to there, of the counted windows."""
+    j = [each.state.name for each in study.plan.samples].index(result.name)
+    errors = study.shots.errors[-1][j]
+    kept = np.isfinite(errors.mean) & ~study.shots.is_lost
+    return errors.mean[kept], errors.moved[kept]
 
 
 def _interval(interval: Interval, unit: Unit) -> str:

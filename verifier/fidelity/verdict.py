@@ -54,6 +54,7 @@ def decide(
     if doubts:
         return Finding(Verdict.INCONCLUSIVE, tuple(doubts), tuple(dict.fromkeys(advice)))
     reasons = [sentences.within(r) for r in results]
+    reasons += [sentence for r in results for sentence in sentences.unmoved(study, r)]
     if coverage.required == 0.0:
         reasons.append(sentences.scope(coverage))
     return Finding(Verdict.PASS, tuple(reasons), ())

@@ -94,8 +94,9 @@ def _half_span(samples: Samples, horizon: float, after: float) -> float:
 def _starts(base: Array, spans: Array, horizon: float) -> tuple[Array, Array]:
     """Start times on samples of the time base, and the stretch of each: (W,), (W, 2)."""
     times, stretches = [np.empty(0)], [np.empty((0, 2))]
-    for span in spans:
-        margin = min(SPAN * horizon, (span[1] - span[0] - horizon) / 2.0)
+    long_enough = spans[:, 1] - spans[:, 0] >= horizon * (1.0 - 1e-6)
+    for span in spans[long_enough]:
+        margin = min(SPAN * horizon, max(span[1] - span[0] - horizon, 0.0) / 2.0)
         wanted = np.arange(
             span[0] + margin, span[1] - horizon - margin + 1e-6 * horizon, STRIDE * horizon
         )

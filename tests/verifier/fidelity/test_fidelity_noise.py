@@ -51,6 +51,23 @@ def test_a_wrong_spec_does_not_count_as_noise(scenes: ModuleType) -> None:
     assert [v.noise.sigma for v in report.variables] == pytest.approx([0.01, 0.01], rel=0.2)
 
 
+def test_noise_is_found_where_the_samples_are_too_sparse_for_differences(
+    scenes: ModuleType,
+) -> None:
+    # Two samples a second of a motion with a period of 6.7 s: only the model explains its curve.
+    drive = scenes.van_der_pol_drive(5, 600.0, 0.01)
+    sparse = {
+        n: replace(s, times=s.times[::10], values=s.values[::10]) for n, s in drive.series.items()
+    }
+    x = sparse["x"]
+
+    report = verify(scenes.van_der_pol(), replace(drive, series=sparse))
+
+    assert plain_noise(x.times, x.values, 0.0).sigma > 0.03
+    # The noise of v leaks into the predicted x: variance 1 + 0.5^2 / 2 / 1.5, that is 4 % more.
+    assert report.variables[0].noise.sigma == pytest.approx(0.0104, rel=0.1)
+
+
 @given(st.floats(1e-4, 1e3), st.floats(-1e3, 1e3))
 @settings(max_examples=20, deadline=None)
 def test_noise_has_the_unit_of_its_variable(scale: float, offset: float) -> None:

@@ -106,9 +106,39 @@ def test_the_figures_do_not_depend_on_when_it_was(scenes: ModuleType, seconds: f
         assert b.declared.departure == pytest.approx(a.declared.departure, rel=1e-6, abs=1e-9)
 
 
+def test_a_fast_field_is_integrated_with_steps_that_fit_it(scenes: ModuleType) -> None:
+    spec = scenes.program(
+        (scenes.state("x", -5.0, 5.0),),
+        (scenes.control("u", -2.0, 2.0, 0.0),),
+        {"x": "30 u x sub mul"},
+        scenes.fidelity({"x": 0.01}, 4.0),
+    )
+    times = np.arange(0.0, 60.0, 0.5)
+    u = np.repeat(np.random.default_rng(1).uniform(-2.0, 2.0, 30), 4)
+    # Half a second is fifteen time constants: each sample ends where the held input is.
+    x = np.concatenate([[0.0], u[:-1]])
+
+    report = verify(spec, scenes.trace(scenes.series("x", times, x), scenes.series("u", times, u)))
+
+    assert of(report, "x").declared.rmse < 1e-4
+
+
+def test_slow_samples_do_not_coarsen_the_integration(scenes: ModuleType) -> None:
+    drive = scenes.van_der_pol_drive(1, 60.0, 0.0)
+    slow = {
+        n: replace(s, times=s.times[::10], values=s.values[::10]) for n, s in drive.series.items()
+    }
+
+    report = verify(scenes.van_der_pol(), replace(drive, series=slow))
+
+    # One step per half second would be off by 0.02.
+    assert of(report, "x").declared.rmse < 0.01 * 0.05
+
+
 def test_turns_of_an_angle_do_not_matter(scenes: ModuleType) -> None:
-    drive = scenes.unicycle_drive(2, 40.0, 0.01)
+    drive = scenes.unicycle_drive(2, 120.0, 0.01)
     heading = drive.series["heading"]
+    assert np.ptp(heading.values) > np.pi
     wrapped = replace(heading, values=np.mod(heading.values + np.pi, 2.0 * np.pi) - np.pi)
 
     a = verify(scenes.unicycle(), drive)
@@ -318,3 +348,15 @@ def test_a_discrete_state_is_taken_as_measured(scenes: ModuleType) -> None:
     report = verify(spec, drive)
 
     assert report.verdict is Verdict.PASS
+
+
+def test_a_pass_that_standing_still_would_earn_says_so(scenes: ModuleType) -> None:
+    spec = scenes.program(
+        (scenes.state("x", -5.0, 5.0),), (), {"x": "0.02"}, scenes.fidelity({"x": 0.1}, 1.0)
+    )
+    times = np.arange(0.0, 30.0, 0.1)
+
+    report = verify(spec, scenes.trace(scenes.series("x", times, 0.02 * times)))
+
+    assert report.verdict is Verdict.PASS
+    assert "a spec in which it stays where it is would pass as well" in report.reasons[1]
