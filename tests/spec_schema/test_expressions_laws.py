@@ -1,8 +1,10 @@
 """Laws that hold for every expression, on random trees and random points."""
 
 import math
+import operator
 import random
-from itertools import pairwise
+from fractions import Fraction
+from itertools import pairwise, product
 
 import pytest
 import sympy
@@ -69,6 +71,16 @@ def test_text_reads_back_as_the_same_tree(expr: Expr) -> None:
     assert hash(parse(to_text(expr))) == hash(expr)
 
 
+def test_text_reads_back_for_each_operation_inside_each_other() -> None:
+    for outer, inner in product(ARITY, repeat=2):
+        parts: list[Expr] = [Name(name) for name in "abc"]
+        for place in range(ARITY[outer]):
+            operands = list(parts)
+            operands[place] = Apply(inner, tuple(parts[: ARITY[inner]]))
+            expr = Apply(outer, tuple(operands[: ARITY[outer]]))
+            assert parse(to_text(expr)) == expr, to_text(expr)
+
+
 @given(trees())
 def test_text_holds_no_brackets_that_could_go(expr: Expr) -> None:
     text = to_text(expr)
@@ -123,6 +135,23 @@ def test_sampled_values_lie_in_the_bounds(expr: Expr, seed: int) -> None:
         assert math.isnan(value) or low <= value <= high
 
 
+@given(trees(("add", "sub", "mul"), TAME), st.tuples(*[st.floats(-4, 4)] * 3))
+def test_exact_values_lie_in_the_bounds_of_their_point(
+    expr: Expr, point: tuple[float, ...]
+) -> None:
+    """Without a rounding error that the bounds do not know of."""
+    values = {name: Fraction(at) for name, at in zip(NAMES, point, strict=True)}
+    exact = {"add": operator.add, "sub": operator.sub, "mul": operator.mul}
+
+    def visit(node: Expr, operands: tuple[Fraction, ...]) -> Fraction:
+        if isinstance(node, Apply):
+            return exact[node.op](*operands)
+        return values[node.name] if isinstance(node, Name) else Fraction(evaluate(node, {}))
+
+    low, high = bounds(expr, {name: (at, at) for name, at in zip(NAMES, point, strict=True)})
+    assert Fraction(low) <= fold(expr, visit) <= Fraction(high)
+
+
 STEADY = ("add", "sub", "mul", "neg", "abs", "min", "max", "clip", "sin", "cos", "atan", "tanh")
 
 
@@ -164,6 +193,27 @@ def test_simplifying_keeps_the_value(expr: Expr, point: tuple[float, ...]) -> No
 
     # Re-ordered products differ by some 1e-16 relative; a part may amplify it by 1e5.
     assert evaluate(simpler, values) == pytest.approx(evaluate(expr, values), rel=1e-6, abs=1e-6)
+
+
+PAIRED = ("add", "sub", "mul", "div", "pow", "min", "max")
+
+
+def test_simplifying_keeps_the_value_of_each_pair_of_operations() -> None:
+    values = {"x": 1.7, "y": 0.6}
+    x, y, numbers = Name("x"), Name("y"), [Number(n) for n in (0.0, 1.0, -1.0, 2.0, -3.0)]
+    inner = [
+        Apply(op, pair)
+        for op in PAIRED[:5]
+        for pair in ((x, y), (numbers[3], x), (x, numbers[3]), (x, numbers[4]))
+    ]
+    parts = [x, *numbers, *inner, Apply("neg", (x,)), Apply("abs", (x,))]
+    pairs = [Apply(op, pair) for op in PAIRED for pair in product(parts, repeat=2)]
+    for expr in [*pairs, *(Apply(op, (part,)) for op in ("neg", "abs") for part in pairs)]:
+        value, simpler = evaluate(expr, values), simplify(expr)
+        assert simplify(simpler) == simpler, to_text(expr)
+        if math.isfinite(value):
+            found = evaluate(simpler, values)
+            assert math.isclose(found, value, rel_tol=1e-12, abs_tol=1e-12), to_text(expr)
 
 
 @given(trees())

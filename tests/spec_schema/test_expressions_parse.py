@@ -242,6 +242,21 @@ def test_a_hostile_text_is_refused_in_no_time(text: str) -> None:
     assert peak < 50e6
 
 
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x" * 10_001, "the expression has 10001 characters (at most 10000)"),
+        ("x" + "+x" * 1_001, "the expression has 1001 operators (at most 1000)"),
+        ("(" * 51 + "x" + ")" * 51, "the expression has over 50 brackets within brackets"),
+        ("x" + "+x" * 201, "the expression nests more than 200 operations"),
+    ],
+    ids=["long", "busy", "bracketed", "deep"],
+)
+def test_each_limit_is_told(text: str, message: str) -> None:
+    (fault,) = faults(text)
+    assert (fault.code, fault.message) == ("S132", message)
+
+
 def test_two_hundred_terms_are_not_too_many() -> None:
     expr = parse("+".join(["x"] * 200))
     assert names_in(expr) == {"x"}
