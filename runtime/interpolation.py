@@ -59,17 +59,32 @@ def lookup(table: Table, points: npt.ArrayLike) -> Array:
     A point has the same bits whatever the other points are.
     """
     flat, leading = _flat(table, points)
+    out = np.empty((*leading, table.coefficients.shape[-1]))
+    lookup_into(table, flat, out)
+    return out
+
+
+def lookup_into(table: Table, points: npt.ArrayLike, out: Array) -> None:
+    """Write what `lookup` gives to `out`, contiguous, so that a loop need not ask for memory.
+
+    Raises:
+        ValueError: `out` has not the right size, or is not contiguous.
+    """
+    flat, _ = _flat(table, points)
     m = table.coefficients.shape[-1]
-    out = np.empty((len(flat), m))
+    if out.size != len(flat) * m or out.shape[-1] != m or not out.flags.c_contiguous:
+        raise ValueError(
+            f"the result needs {m} contiguous numbers for each of {len(flat)} points "
+            f"(got the shape {out.shape})"
+        )
     lookup_points(
         block_address(),
         table.method is Method.CUBIC,
         *grid_of(table.axes, table.method),
         _read_only(table.coefficients.reshape(-1)),
         flat,
-        out,
+        out.reshape(-1, m),
     )
-    return out.reshape(*leading, m)
 
 
 def lookup_jacobian(table: Table, points: npt.ArrayLike) -> Array:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from runtime.arrays import Array
-from runtime.interpolation import grid_of, lookup, lookup_jacobian, tabulate
+from runtime.interpolation import grid_of, lookup, lookup_into, lookup_jacobian, tabulate
 from runtime.kernels.interpolate import block_address, lookup_lanes, lookup_points
 from runtime.program import Axis, Method, Table
 
@@ -277,6 +277,19 @@ def test_coefficients_lie_in_memory_as_kernels_read_them() -> None:
 
     assert coefficients.flags.c_contiguous
     assert not coefficients.flags.writeable
+
+
+def test_a_result_can_go_where_there_is_memory() -> None:
+    table = random_table(2, 3, Method.CUBIC)
+    points = points_of(table.axes, 20, np.random.default_rng(0))
+    out = np.empty((4, 5, 3))
+
+    lookup_into(table, points, out)
+
+    assert np.array_equal(out.reshape(20, 3), lookup(table, points))
+    for unfit in (np.empty((20, 2)), np.empty((19, 3)), np.empty((3, 20)).T, np.empty(60)):
+        with pytest.raises(ValueError, match="needs 3 contiguous numbers for each of 20 points"):
+            lookup_into(table, points, unfit)
 
 
 def test_a_table_is_a_copy() -> None:
