@@ -375,13 +375,14 @@ def _accept(
     h = w[at.h, lane]
     reached = aim.end if h == aim.end - w[at.t, lane] else w[at.t, lane] + h
     variable = outsider(w, at.new, domain, at.n, lane)
-    sampled = (times[pace[SAMPLE, lane]] - reached) * h <= 0.0
+    leaves = variable >= 0 or _may_leave(w, at, domain, moving, lane)
     theta = 1.0
-    if variable >= 0 or sampled or _may_leave(w, at, domain, moving, lane):
+    if leaves or (times[pace[SAMPLE, lane]] - w[at.t, lane]) / h <= 1.0:
         _set_dense(w, at, moving, lane)
+    if leaves:
         theta, found = first_exit(w, at, lane, domain)
         variable = found if found >= 0 else variable
-        _give_samples(w, at, pace, times, theta, lane, states)
+    _give_samples(w, at, pace, times, theta, lane, states)
     if variable >= 0:
         w[at.t, lane] += theta * h
         for i in range(at.n):
