@@ -68,9 +68,7 @@ def simulate(
     u = _values(program.controls, controls or {}, "control")
     shape = np.broadcast_shapes(x0.shape[:-1], u.shape[:-1])
     runs = math.prod(shape)
-    x0, u = (
-        np.broadcast_to(v, (*shape, v.shape[-1])).reshape(runs, v.shape[-1]) for v in (x0, u)
-    )
+    x0, u = (np.broadcast_to(v, (*shape, v.shape[-1])).reshape(runs, v.shape[-1]) for v in (x0, u))
     times = _sample_times(program, duration, every)
     if times.size * x0.size > MOST_SAMPLES:
         raise ValueError(

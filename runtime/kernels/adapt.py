@@ -21,7 +21,6 @@ from runtime.kernels.blocks import (
     STAGES,
     TOO_MANY_STEPS,
     Places,
-    begin_dense,
     blank,
     copy_lane,
     copy_rows,
@@ -37,39 +36,10 @@ from runtime.kernels.blocks import (
     work_space,
 )
 from runtime.kernels.cache import inlined, kernel, part
+from runtime.kernels.dormand_prince import first_step, may_leave, set_dense, set_stage, step_error
 from runtime.kernels.machine import run
 from runtime.kernels.tape import LANES, Tape
 
-# J. R. Dormand, P. J. Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math.
-# 6 (1980) 19-26: RK5(4)7M. The last row is the solution of order 5.
-TABLEAU: Final = np.array(
-    [
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [1 / 5, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [3 / 40, 9 / 40, 0.0, 0.0, 0.0, 0.0],
-        [44 / 45, -56 / 15, 32 / 9, 0.0, 0.0, 0.0],
-        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0],
-        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0],
-        [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
-    ]
-)
-# The difference to the embedded solution of order 4.
-ERROR: Final = np.array(
-    [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40]
-)
-# L. F. Shampine, Some practical Runge-Kutta formulas, Math. Comp. 46 (1986) 135-150; in the form
-# of Hairer, Norsett, Wanner (program DOPRI5, array D).
-DENSE: Final = np.array(
-    [
-        -12715105075 / 11282082432,
-        0.0,
-        87487479700 / 32700410799,
-        -10690763975 / 1880347072,
-        701980252875 / 199316789632,
-        -1453857185 / 822651844,
-        69997945 / 29380423,
-    ]
-)
 # Step control: Hairer, Norsett, Wanner II.4 and IV.2 (PI controller, Gustafsson).
 SAFETY, MEMORY, SHRINK, GROW = 0.9, 0.04, 0.2, 10.0
 EXPONENT: Final = 0.2 - 0.75 * MEMORY
@@ -213,25 +183,10 @@ def _attempt(
     for stage in range(0 if fresh else 1, STAGES):
         if stage == 1:
             _choose_steps(w, at, pace, moving, atol, aim, lanes, states, ended)
-        _set_stage(w, at, moving, stage, lanes)
+        set_stage(w, at, moving, stage, lanes)
         run(tape, w, lanes)
         take_rates(tape, w, at.k + stage * at.n, lanes)
     copy_rows(w, at.register, at.new, at.n, lanes)
-
-
-@inlined
-def _set_stage(w: Array, at: Places, moving: Integers, stage: int, lanes: int) -> None:
-    for j in range(moving.shape[0]):
-        i = moving[j]
-        for lane in range(lanes):
-            w[i, lane] = 0.0
-        for before in range(stage):
-            weight = TABLEAU[stage, before]
-            k = at.k + before * at.n + i
-            for lane in range(lanes):
-                w[i, lane] += weight * w[k, lane]
-        for lane in range(lanes):
-            w[i, lane] = w[at.x + i, lane] + w[at.h, lane] * w[i, lane]
 
 
 @part
@@ -251,27 +206,12 @@ def _choose_steps(
         left = aim.end - w[at.t, lane]
         if pace[FRESH, lane] == 1:
             pace[FRESH, lane] = 0
-            first = _first_step(w, at, moving, atol, aim.rtol, lane)
+            first = first_step(w, at, moving, atol, aim.rtol, lane)
             w[at.h, lane] = math.copysign(first, left)
             if not is_finite(w, at.k, at.n, lane):
                 _stop(w, at, pace, lane, DIVERGED, states, ended)
         if abs(w[at.h, lane]) * 1.01 >= abs(left):
             w[at.h, lane] = left
-
-
-@part
-def _first_step(
-    w: Array, at: Places, moving: Integers, atol: Array, rtol: float, lane: int
-) -> float:
-    """A hundredth of the time in which the state would double (Hairer, Norsett, Wanner II.4)."""
-    size = 0.0
-    speed = 0.0
-    for j in range(moving.shape[0]):
-        i = moving[j]
-        scale = atol[i] + rtol * abs(w[at.x + i, lane])
-        size = max(size, abs(w[at.x + i, lane]) / scale)
-        speed = max(speed, abs(w[at.k + i, lane]) / scale)
-    return 0.01 * size / speed if size > 1e-5 and speed > 1e-5 else 1e-6
 
 
 @part
@@ -290,7 +230,7 @@ def _judge(
 ) -> None:
     """Accept or reject a lane's step, and choose the next one's length."""
     h = w[at.h, lane]
-    error = _error(w, at, moving, atol, aim.rtol, lane)
+    error = step_error(w, at, moving, atol, aim.rtol, lane)
     pace[TRIES, lane] += 1
     if error <= 1.0:
         shrink = error**EXPONENT / (SAFETY * w[at.error, lane] ** MEMORY)
@@ -343,22 +283,6 @@ def _stop_stuck(
 
 
 @part
-def _error(w: Array, at: Places, moving: Integers, atol: Array, rtol: float, lane: int) -> float:
-    """The largest error of a state in units of its tolerance; NaN where it is not finite."""
-    largest = 0.0
-    for j in range(moving.shape[0]):
-        i = moving[j]
-        error = 0.0
-        for stage in range(STAGES):
-            error += ERROR[stage] * w[at.k + stage * at.n + i, lane]
-        size = max(abs(w[at.x + i, lane]), abs(w[at.new + i, lane]))
-        error = abs(error * w[at.h, lane]) / (atol[i] + rtol * size)
-        if not error <= largest:
-            largest = error
-    return largest if is_finite(w, at.new, at.n, lane) else np.nan
-
-
-@part
 def _accept(
     w: Array,
     at: Places,
@@ -375,10 +299,10 @@ def _accept(
     h = w[at.h, lane]
     reached = aim.end if h == aim.end - w[at.t, lane] else w[at.t, lane] + h
     variable = outsider(w, at.new, domain, at.n, lane)
-    leaves = variable >= 0 or _may_leave(w, at, domain, moving, lane)
+    leaves = variable >= 0 or may_leave(w, at, domain, moving, lane)
     theta = 1.0
     if leaves or (times[pace[SAMPLE, lane]] - w[at.t, lane]) / h <= 1.0:
-        _set_dense(w, at, moving, lane)
+        set_dense(w, at, moving, lane)
     if leaves:
         theta, found = first_exit(w, at, lane, domain)
         variable = found if found >= 0 else variable
@@ -396,32 +320,6 @@ def _accept(
     copy_lane(w, at.k + (STAGES - 1) * at.n, at.k, at.n, lane)
     if pace[SAMPLE, lane] == times.shape[0]:
         _stop(w, at, pace, lane, COMPLETED, states, ended)
-
-
-@part
-def _set_dense(w: Array, at: Places, moving: Integers, lane: int) -> None:
-    """The polynomial of order 4 through the step."""
-    begin_dense(w, at, moving, lane, at.k + (STAGES - 1) * at.n)
-    for j in range(moving.shape[0]):
-        i = moving[j]
-        total = 0.0
-        for stage in range(STAGES):
-            total += DENSE[stage] * w[at.k + stage * at.n + i, lane]
-        w[at.dense + 5 * i + 4, lane] = w[at.h, lane] * total
-
-
-@part
-def _may_leave(w: Array, at: Places, domain: Array, moving: Integers, lane: int) -> bool:
-    """Whether a step with both ends inside is so near an edge that it could bulge out of it."""
-    for j in range(moving.shape[0]):
-        i = moving[j]
-        x, new = w[at.x + i, lane], w[at.new + i, lane]
-        last = at.k + (STAGES - 1) * at.n
-        slopes = abs(w[at.k + i, lane]) + abs(w[last + i, lane])
-        bulge = 0.5 * abs(w[at.h, lane]) * slopes
-        if min(x, new) - bulge < domain[0, i] or max(x, new) + bulge > domain[1, i]:
-            return True
-    return False
 
 
 @part

@@ -15,7 +15,6 @@ ended: (B, 4 + n) per trajectory: code, variable (register entry or -1), side (1
 -1 below, 0), time and state.
 """
 
-
 from typing import Final, NamedTuple
 
 import numpy as np

@@ -3,7 +3,6 @@
 Every trajectory has its own times; inputs are held during a step. A step of length 0 does nothing.
 """
 
-
 from runtime.arrays import Array, Integers
 from runtime.kernels.blocks import (
     COMPLETED,
