@@ -5,7 +5,7 @@ otherwise the array is interpolated between its own nodes and tabulated anew.
 """
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator, make_interp_spline
+import scipy
 
 from compiler.tabulate import Sampler
 from runtime.arrays import Array
@@ -25,13 +25,13 @@ def between_nodes(nodes: tuple[Array, ...], values: Array, method: Method) -> Sa
     cubic: a tensor-product spline with not-a-knot ends; linear: multilinear.
     """
     if method is Method.LINEAR:
-        surface = RegularGridInterpolator(nodes, values, method="linear")
+        surface = scipy.interpolate.RegularGridInterpolator(nodes, values, method="linear")
         return lambda points: np.asarray(surface(points), dtype=np.float64)
 
     def sample(points: Array) -> Array:
         found = np.broadcast_to(values, (len(points), *values.shape))
         for at, place in zip(nodes, points.T, strict=True):
-            weights = make_interp_spline(at, np.eye(len(at)), k=3)(place)
+            weights = scipy.interpolate.make_interp_spline(at, np.eye(len(at)), k=3)(place)
             found = np.einsum("pn,pn...->p...", weights, found)
         return found
 

@@ -12,7 +12,7 @@ from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet
 from compiler.quantities import per_second, si_value
 from compiler.sketched import range_of
-from compiler.tabulate import MARGIN, TableError, Tabulated, Wanted, tabulate_function
+from compiler.tabulate import MARGIN, ROUNDING, TableError, Tabulated, Wanted, tabulate_function
 from runtime.arrays import Array
 from runtime.flow import Source, flow_of, next_states, rates
 from runtime.program import Control, ErrorBound, Field, Kind, Method, Program, State, Table, Term
@@ -122,10 +122,12 @@ def measured(program: Program) -> Program:
     points = _points(program, np.random.default_rng(SPOTS))
     x, u = points[:, : len(program.states)], points[:, len(program.states) :]
     run = next_states if program.field.is_map else rates
-    difference = np.abs(
-        run(flow_of(program, Source.TABLES), x, u) - run(flow_of(program, Source.FORMULA), x, u)
-    )[:, list(program.driven)]
-    largest = MARGIN * np.nanmax(difference, axis=0)
+    by_tables, by_formula = (
+        run(flow_of(program, source), x, u)[:, list(program.driven)]
+        for source in (Source.TABLES, Source.FORMULA)
+    )
+    difference, size = np.abs(by_tables - by_formula), np.abs(by_formula)
+    largest = MARGIN * np.nanmax(difference, axis=0) + ROUNDING * np.nanmax(size, axis=0)
     bounds = tuple(
         replace(b, measured=float(max(e, b.measured)), points=b.points + len(points))
         for b, e in zip(program.field.bounds, largest, strict=True)

@@ -7,8 +7,7 @@ the hull, on the line to its centre, holds.
 """
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator, RBFInterpolator, interp1d
-from scipy.spatial import ConvexHull, QhullError
+import scipy  # its parts are loaded when they are first used; most specs need none
 
 from compiler.tabulate import Sampler
 from runtime.arrays import Array
@@ -27,7 +26,9 @@ def thin_plate(at: Array, go: Array, low: Array, high: Array) -> Sampler:
     _require_spread(at)
     span = high - low
     try:
-        surface = RBFInterpolator((at - low) / span, go, kernel="thin_plate_spline", degree=1)
+        surface = scipy.interpolate.RBFInterpolator(
+            (at - low) / span, go, kernel="thin_plate_spline", degree=1
+        )
     except np.linalg.LinAlgError as error:
         raise SketchError(
             "the arrows stand on one line or plane, so they don't say what happens beside it",
@@ -45,7 +46,7 @@ def piecewise_linear(at: Array, go: Array) -> Sampler:
     _require_spread(at)
     if at.shape[1] == 1:
         order = at[:, 0].argsort()
-        line = interp1d(
+        line = scipy.interpolate.interp1d(
             at[order, 0],
             go[order],
             axis=0,
@@ -54,7 +55,7 @@ def piecewise_linear(at: Array, go: Array) -> Sampler:
         )
         return lambda points: np.asarray(line(points[:, 0]), dtype=np.float64)
     hull = _hull(at)
-    surface = LinearNDInterpolator(at, go)
+    surface = scipy.interpolate.LinearNDInterpolator(at, go)
 
     def sample(points: Array) -> Array:
         return np.asarray(surface(_drawn_in(points, at.mean(axis=0), hull)), dtype=np.float64)
@@ -70,7 +71,7 @@ def reaches_beyond(at: Array, low: Array, high: Array) -> int | None:
     if at.shape[1] == 1:
         return None
     corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(at.shape[1], -1).T
-    equations = _hull(at).equations
+    equations = _hull(at)
     outside = corners @ equations[:, :-1].T + equations[:, -1] > 1e-9 * (high - low).max()
     return 0 if outside.any() else None
 
@@ -85,19 +86,22 @@ def _require_spread(at: Array) -> None:
         )
 
 
-def _hull(at: Array) -> ConvexHull:
+def _hull(at: Array) -> Array:
+    """The facets (k, d + 1) of the convex hull: normal and offset, negative inside."""
     try:
-        return ConvexHull(at)
-    except QhullError as error:
+        hull = scipy.spatial.ConvexHull(at)
+    except scipy.spatial.QhullError as error:
         raise SketchError(
             "the arrows stand on one line or plane, so they don't say what happens beside it",
             "add arrows that don't all lie on one line",
         ) from error
+    facets: Array = hull.equations
+    return facets
 
 
-def _drawn_in(points: Array, centre: Array, hull: ConvexHull) -> Array:
+def _drawn_in(points: Array, centre: Array, hull: Array) -> Array:
     """Points beyond the hull moved towards its centre, just onto it."""
-    normals, offsets = hull.equations[:, :-1], hull.equations[:, -1]
+    normals, offsets = hull[:, :-1], hull[:, -1]
     reach = -(normals @ centre + offsets)
     along = (points - centre) @ normals.T
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -24,6 +24,7 @@ PROBES = 512  # off-node points per line, at most
 SPOTS = 20_000  # fresh points for the final measurement, and as many in the outermost cells
 WORST = 24  # places around which the largest error is sought again, more densely
 MARGIN = 1.1  # measured errors are enlarged by this, since a denser sample finds a little more
+ROUNDING = 2.0**-50  # of the largest value: no bound is smaller than what doubles can hold
 MOST_NODES = 8_193  # per axis
 SEED = 20_260  # the same input gives the same bytes
 

@@ -6,23 +6,23 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from compiler.check import check as check
     from compiler.compile import Compiled as Compiled
+    from compiler.dump import dump as dump
     from runtime.program import Program as Program
     from runtime.rollout import Rollout as Rollout
     from spec_schema.diagnostics import Diagnostic as Diagnostic
     from spec_schema.diagnostics import SpecError as SpecError
-    from specc.api import Verification as Verification
-    from specc.api import check as check
-    from specc.api import compile_spec as compile_spec
-    from specc.api import dump as dump
-    from specc.api import load_program as load_program
-    from specc.api import portrait as portrait
-    from specc.api import simulate as simulate
-    from specc.api import verify as verify
-    from specc.api import write_artifact as write_artifact
-    from specc.outputs import draw as draw
-    from specc.outputs import record as record
-    from specc.outputs import write_report as write_report
+    from specc.drawn import draw as draw
+    from specc.loading import compile_spec as compile_spec
+    from specc.loading import load_program as load_program
+    from specc.loading import write_artifact as write_artifact
+    from specc.portraying import portrait as portrait
+    from specc.recorded import record as record
+    from specc.reported import write_report as write_report
+    from specc.running import simulate as simulate
+    from specc.verifying import Verification as Verification
+    from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
     from verifier.topology.features import Portrait as Portrait
@@ -35,18 +35,18 @@ HOMES = {
     "Rollout": "runtime.rollout",
     "Diagnostic": "spec_schema.diagnostics",
     "SpecError": "spec_schema.diagnostics",
-    "Verification": "specc.api",
-    "check": "specc.api",
-    "compile_spec": "specc.api",
-    "dump": "specc.api",
-    "load_program": "specc.api",
-    "portrait": "specc.api",
-    "simulate": "specc.api",
-    "verify": "specc.api",
-    "write_artifact": "specc.api",
-    "draw": "specc.outputs",
-    "record": "specc.outputs",
-    "write_report": "specc.outputs",
+    "Verification": "specc.verifying",
+    "check": "compiler.check",
+    "compile_spec": "specc.loading",
+    "dump": "compiler.dump",
+    "load_program": "specc.loading",
+    "portrait": "specc.portraying",
+    "simulate": "specc.running",
+    "verify": "specc.verifying",
+    "write_artifact": "specc.loading",
+    "draw": "specc.drawn",
+    "record": "specc.recorded",
+    "write_report": "specc.reported",
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
     "Portrait": "verifier.topology.features",

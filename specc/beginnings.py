@@ -4,10 +4,9 @@ import re
 from importlib import resources
 from pathlib import Path
 
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.names import RESERVED
-from spec_schema.source import Source
 from spec_schema.suggest import did_you_mean
+from specc.faults import fault
 
 
 def templates() -> dict[str, str]:
@@ -40,9 +39,7 @@ def from_template(template: str, name: str) -> str:
     known = templates()
     if template not in known:
         remedy = did_you_mean(template, list(known)) or f"there are {', '.join(known)}"
-        source = Source(template, "")
-        message = f"no template is named '{template}'"
-        raise SpecError([Diagnostic("V343", Severity.ERROR, message, source, None, help=remedy)])
+        raise fault("V343", template, f"no template is named '{template}'", remedy)
     return re.sub(
         r"^name: .*$", f"name: {identifier(name)}", known[template], count=1, flags=re.MULTILINE
     )

@@ -1,7 +1,11 @@
 """Files: which are specs, and how one is written whole or not at all."""
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
+
+from spec_schema.diagnostics import SpecError
+from specc.faults import fault
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -25,3 +29,24 @@ def spec_files(paths: Sequence[Path]) -> tuple[Path, ...]:
         else:
             found.append(path)
     return tuple(dict.fromkeys(found))
+
+
+def json_bytes(record: object) -> bytes:
+    """A record as indented JSON; never NaN, which isn't JSON."""
+    return (json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def require_suffix(path: Path | None, *suffixes: str) -> None:
+    """Refuse a file that could not be written in the end, before the work begins.
+
+    Raises:
+        SpecError: none of `suffixes` fits.
+    """
+    if path is not None and path.suffix.lower() not in suffixes:
+        raise unknown_suffix(path, ", ".join(suffixes))
+
+
+def unknown_suffix(path: Path, known: str) -> SpecError:
+    """The error about a file whose kind can't be written."""
+    message = f"no output of kind '{path.suffix or path.name}' can be written"
+    return fault("V345", path, message, f"known are {known}")

@@ -7,13 +7,12 @@ it stands; every guess in it is marked, so that the next step is an edit and not
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError
-from spec_schema.source import Source
 from specc.beginnings import identifier
+from specc.faults import fault
 from specc.inventory_text import MOST_FIELDS, looks
 from verifier.traces.inventory import FieldInfo, Inventory, TopicInfo
 
@@ -49,6 +48,7 @@ class Variable:
     rate: str = ""
     relates: tuple[str, str] = ("what of the robot", "what of its surroundings")
     periodic: bool = False
+    tolerance: str = ""
 
 
 @final
@@ -100,18 +100,20 @@ def _drive(
 ) -> Guess:
     x, y, yaw = (part for part in parts if part is not None)
     start = ("where the log's frame begins",)
+    base = ("center of the base", *start)
     states = (
-        _variable("x", x, "m", "speed * cos(heading)", ("center of the base", *start)),
-        _variable("y", y, "m", "speed * sin(heading)", ("center of the base", *start)),
+        replace(_variable("x", x, "m", "speed * cos(heading)", base), tolerance="0.1 m"),
+        replace(_variable("y", y, "m", "speed * sin(heading)", base), tolerance="0.1 m"),
         Variable(
-            "heading",
-            yaw.path,
-            "rad",
-            -math.pi,
-            math.pi,
-            "turn",
-            ("forward axis", *start),
+            name="heading",
+            path=yaw.path,
+            unit="rad",
+            low=-math.pi,
+            high=math.pi,
+            rate="turn",
+            relates=("forward axis", *start),
             periodic=True,
+            tolerance="0.05 rad",
         ),
     )
     controls = (_variable("speed", speed, "m/s"), _variable("turn", turn, "rad/s"))
@@ -157,9 +159,8 @@ def _plain_guess(found: Inventory) -> Guess:
         and not re.search(r"(^|[._])(t|time|stamp|sec|nanosec|seq|covariance\[\d+\])$", info.path)
     ]
     if not fields:
-        source = Source(found.source, "")
         message = "this log holds no number that changes, so there is nothing to write a spec about"
-        raise SpecError([Diagnostic("V344", Severity.ERROR, message, source, None)])
+        raise fault("V344", found.source, message)
     states: list[Variable] = []
     for info in fields[:MOST_STATES]:
         name = _unused(identifier(info.path.rsplit(".", 1)[-1]), [s.name for s in states])
@@ -202,7 +203,6 @@ def _spec_lines(found: Inventory, name: str, guess: Guess) -> Iterator[str]:
     for state in guess.states:
         yield f"    {state.name}: {_tolerance(state)}"
     yield "  horizon: 1 s                 # CHECK how far ahead it must hold"
-    yield "  coverage: 0.1                # CHECK the share of the domain that must have been seen"
     yield "trace:"
     for variable in (*guess.states, *guess.controls):
         yield f"  {variable.name}: {_text(variable.path)}"
@@ -225,7 +225,9 @@ def _domain(variable: Variable) -> str:
 
 
 def _tolerance(state: Variable) -> str:
-    """Two percent of the range seen, to one digit: something to begin with."""
+    """As guessed with the variable, else two percent of the range seen, to one digit."""
+    if state.tolerance:
+        return state.tolerance
     width = 0.02 * (state.high - state.low)
     digits = 10.0 ** math.floor(math.log10(width))
     return f"{round(width / digits) * digits:.3g}"
@@ -240,5 +242,5 @@ def _other_fields(found: Inventory, guess: Guess) -> Iterator[str]:
     yield "# Also in this log:"
     for topic in found.topics:
         for info in topic.fields[:MOST_FIELDS]:
-            if info.path not in used and "covariance" not in info.path:
+            if info.path not in used and info.low != info.high:
                 yield f"#   {info.path}   ({looks(info)})"

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
-from runtime.program import Control, Kind, Program, State
+from runtime.program import Control, Kind, State
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.parse import parse
@@ -38,15 +38,6 @@ def settings_for(parts: Sequence[Part], given: Mapping[str, Value], what: str) -
     if problems:
         raise SpecError(problems)
     return found
-
-
-def si_settings(program: Program, given: Mapping[str, Value]) -> dict[str, float]:
-    """SI values of states and controls.
-
-    Raises:
-        SpecError: as `settings_for`.
-    """
-    return settings_for((*program.states, *program.controls), given, "state or control")
 
 
 def seconds(value: Value) -> float:

@@ -8,10 +8,9 @@ from typing import final
 
 from runtime.artifact import ArtifactError, from_bytes
 from runtime.program import Program
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import load
 from spec_schema.project import ProjectSpec
-from spec_schema.source import Source
+from specc.faults import fault
 from verifier.traces.open_log import attached_program
 
 PROJECT = "specc.yaml"
@@ -42,7 +41,7 @@ def find_spec(trace: Path, named: Path | None, program_of: Callable[[Path], Prog
             _refuse_other_text(trace, program, project)
         return Found(program, f"{name}, attached to the trace (spec text sha256 {_short(program)})")
     if project is None:
-        raise _fault(
+        raise fault(
             "V331",
             trace,
             f"no spec is attached to the trace, and no {PROJECT} is in this folder or above it",
@@ -68,7 +67,7 @@ def _attached(trace: Path) -> tuple[str, Program] | None:
         return name, from_bytes(data)
     except ArtifactError as error:
         message = f"the attached {name} can't be used: {error}"
-        raise _fault("V332", trace, message, "name a spec with --spec") from error
+        raise fault("V332", trace, message, "name a spec with --spec") from error
 
 
 def _project_of(trace: Path) -> _Project | None:
@@ -100,7 +99,7 @@ def _refuse_other_text(trace: Path, program: Program, project: _Project) -> None
             continue
         digest = hashlib.sha256(loaded.source.text.encode()).hexdigest()
         if digest != program.source.sha256:
-            raise _fault(
+            raise fault(
                 "V333",
                 trace,
                 f"the trace carries spec '{program.name}' with sha256 {_short(program)}, the "
@@ -117,7 +116,7 @@ def _spec_of(project: _Project, trace: Path) -> tuple[Path, str]:
     if len(project.spec.specs) == 1:
         return folder / project.spec.specs[0], "the only spec of"
     count = len(project.spec.specs)
-    raise _fault(
+    raise fault(
         "V334",
         trace,
         f"{project.path} names {count} specs, and none of its `traces:` patterns fits this trace",
@@ -127,8 +126,3 @@ def _spec_of(project: _Project, trace: Path) -> tuple[Path, str]:
 
 def _short(program: Program) -> str:
     return program.source.sha256[:12]
-
-
-def _fault(code: str, trace: Path, message: str, remedy: str) -> SpecError:
-    source = Source(str(trace), "")
-    return SpecError([Diagnostic(code, Severity.ERROR, message, source, None, help=remedy)])

@@ -25,7 +25,7 @@ ELSEWHERE = {
     "S012": "larger than 1 MiB: tests/spec_schema/test_load.py",
     "S015": "no such file: tests/spec_schema/test_load.py",
     "S016": "more than 100 mistakes: tests/spec_schema/test_load.py",
-    "S131": "an empty text is refused as S110 first: tests/spec_schema/test_expressions_laws.py",
+    "S131": "an empty text is refused as S110 first: tests/spec_schema/test_expressions_parse.py",
     "S200": "a project is no behavior: tests/compiler/test_compile.py",
 }
 

@@ -33,17 +33,18 @@ def compile_(
 
     `specc compile specs/van_der_pol.yaml --dump`
     """
-    from specc import api, printing
+    from compiler.dump import dump as dumped
+    from specc import loading, printing
 
     warmed()
     with progress_bar(f"compiling {spec.name}") as progress:
-        compiled = api.compile_spec(spec, progress)
+        compiled = loading.compile_spec(spec, progress)
     show_diagnostics(compiled.warnings)
     if dump:
-        print_text(api.dump(compiled.program))
+        print_text(dumped(compiled.program))
         return
     path = output or Path(f"{compiled.program.name}.specc")
-    data = api.write_artifact(compiled.program, path)
+    data = loading.write_artifact(compiled.program, path)
     if form is Format.JSON:
         print_json(printing.compile_record(compiled.program, path, data))
         return

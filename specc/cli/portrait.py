@@ -35,12 +35,12 @@ def portrait(
 
     `specc portrait specs/wall_follow.yaml --axes distance,heading --format json`
     """
-    from specc import api
+    from specc import loading, portraying
 
     warmed()
-    program = api.load_program(spec)
+    program = loading.load_program(spec)
     names = tuple(name.strip() for name in axes.split(",")) if axes else None
-    portrayed = api.portrait(program, names, assignments(settings))
+    portrayed = portraying.portrait(program, names, assignments(settings))
     if form is Format.JSON:
         from verifier.topology.portrait_json import as_json
 
@@ -50,8 +50,8 @@ def portrait(
 
         print_text(portrait_summary(portrayed))
     if output is not None or form is Format.TEXT:
-        from specc import outputs
+        from specc.drawn import draw
 
         path = output or Path(f"{program.name}.svg")
-        outputs.draw(portrayed, path)
+        draw(portrayed, path)
         say(f"wrote {path}", "bold")

@@ -40,14 +40,18 @@ def simulate(
 
     `specc simulate specs/wall_follow.yaml --start distance='40 cm' -d 10 --format json`
     """
-    from specc import api, outputs, printing
+    from specc import loading, printing, running
+    from specc.files import require_suffix
 
-    outputs.require_suffix(output, ".mcap", ".csv")
+    require_suffix(output, ".mcap", ".csv")
     warmed()
-    program = api.load_program(spec)
-    rollout = api.simulate(program, assignments(start), duration, assignments(settings), every)
+    program = loading.load_program(spec)
+    begin, held = assignments(start), assignments(settings)
+    rollout = running.simulate(program, begin, duration, held, every)
     if output is not None:
-        outputs.record(program, rollout, output)
+        from specc.recorded import record
+
+        record(program, rollout, output)
         say(f"wrote {output}", "bold")
     if form is Format.JSON:
         print_json(printing.rollout_record(program, rollout))

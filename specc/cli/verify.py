@@ -54,12 +54,12 @@ def verify(
 
     `specc verify drive.mcap --format json > verdict.json`
     """
-    from specc import api
+    from specc import verifying
     from verifier.report.record import as_json
     from verifier.report.text import as_text
 
     warmed()
-    verification = api.verify(trace, spec, clock.value)
+    verification = verifying.verify(trace, spec, clock.value)
     report = verification.report
     if form is Format.JSON:
         print_json({**as_json(report), "found_by": verification.found.how})
@@ -67,10 +67,10 @@ def verify(
         say(f"spec: {verification.found.how}")
         print_text(as_text(report))
     if output:
-        from specc import outputs
+        from specc.reported import write_report
 
         for path in output:
-            outputs.write_report(verification, path)
+            write_report(verification, path)
             say(f"wrote {path}", "bold")
     verdicts = {"pass": Status.YES, "fail": Status.NO, "inconclusive": Status.INCONCLUSIVE}
     return verdicts[str(report.verdict)]

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from runtime.arrays import Array, Integers
 from verifier.report.report import Interval, Standing
@@ -53,7 +53,7 @@ def departure_of(plain: Array, mean: Array, variance: Array, noise_doubt: float)
     total, share = float(np.mean(squares)), float(np.mean(variance))
     blocks = blocks_of(squares)
     low, high = _mean_square_interval(squares, blocks)
-    slack = stats.norm.ppf(0.5 + CONFIDENCE / 2.0) * noise_doubt * share
+    slack = special.ndtri(0.5 + CONFIDENCE / 2.0) * noise_doubt * share
     lower = total - share - np.hypot(total - low, slack)
     upper = total - share + np.hypot(high - total, min(slack, share))
     return Departure(
@@ -119,7 +119,7 @@ def count_of(blocks: Integers) -> int:
 
 def t_quantile(blocks: int) -> float:
     """Student's t, two-sided at the report's confidence."""
-    return float(stats.t.ppf(0.5 + CONFIDENCE / 2.0, max(blocks - 1, 1)))
+    return float(special.stdtrit(max(blocks - 1, 1), 0.5 + CONFIDENCE / 2.0))
 
 
 def _mean_square_interval(squares: Array, blocks: Integers) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.program import Control, Fidelity, Kind, Program, State
@@ -159,4 +159,4 @@ def _chance(errors: Array, blocks: Integers, tolerance: float) -> float:
     error = standard_error(errors, blocks)
     if error == 0.0:
         return 0.0 if beyond > 0.0 else 1.0
-    return float(stats.t.sf(beyond / error, count_of(blocks) - 1))
+    return float(special.stdtr(count_of(blocks) - 1, -beyond / error))

@@ -1,0 +1,33 @@
+"""A behavior run alone, from what a user gives: numbers in the variables' own units."""
+
+from collections.abc import Mapping
+
+from runtime.program import Program
+from runtime.rollout import Rollout
+from runtime.simulate import simulate as run
+from specc.faults import fault
+from specc.given import Value, seconds, settings_for
+
+
+def simulate(
+    program: Program,
+    start: Mapping[str, Value] | None = None,
+    duration: Value = "20 s",
+    controls: Mapping[str, Value] | None = None,
+    every: Value | None = None,
+) -> Rollout:
+    """Run a behavior alone; sensed-only variables follow their closure or are held.
+
+    Values are numbers in the variable's own unit, or quantities (`"40 cm/s"`).
+
+    Raises:
+        SpecError: a name that it does not have, or a value outside its domain.
+    """
+    begin = settings_for(program.states, start or {}, "state")
+    held = settings_for(program.controls, controls or {}, "control")
+    step = None if every is None else seconds(every)
+    try:
+        return run(program, begin, seconds(duration), held, step)
+    except ValueError as error:
+        see = "see `specc simulate --help`"
+        raise fault("V342", program.source.file, str(error), see) from error

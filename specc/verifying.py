@@ -1,0 +1,54 @@
+"""A recording judged against its spec, wherever the spec is found."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeAlias, final
+
+from runtime.program import Program
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.diagnostics import SpecError
+from spec_schema.load import load
+from specc.loading import load_program
+from specc.spec_finding import Found, find_spec
+from verifier.fidelity.verify import verify as judge
+from verifier.report.report import Report
+from verifier.traces.read import read_trace
+
+Clock: TypeAlias = Literal["auto", "sensor", "log"]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Verification:
+    """A verdict, and the spec that it was given under."""
+
+    found: Found
+    report: Report
+
+
+def verify(
+    trace: Path | str, spec: Path | str | Program | None = None, clock: Clock = "auto"
+) -> Verification:
+    """Judge a recording against its spec: the one given, else attached, else the project's.
+
+    Raises:
+        SpecError: the spec or the log can't be used.
+    """
+    trace = Path(trace)
+    if isinstance(spec, Program):
+        found = Found(spec, f"{spec.name}, as given")
+    else:
+        found = find_spec(trace, None if spec is None else Path(spec), _without_running)
+    return Verification(found, judge(found.program, read_trace(trace, found.program, clock)))
+
+
+def _without_running(path: Path) -> Program:
+    """A program for `verify`, which runs nothing that a spec's author wrote."""
+    if path.suffix != ".specc":
+        loaded = load(path)
+        if isinstance(loaded.spec, BehaviorSpec) and loaded.spec.field.module is not None:
+            message = "this field is Python code, and verify runs nobody's code"
+            name = loaded.spec.name
+            remedy = f"specc compile {path}, then specc verify TRACE --spec {name}.specc"
+            raise SpecError([loaded.error("V336", ("field", "module"), message, remedy, key=True)])
+    return load_program(path)
