@@ -38,6 +38,7 @@ from spec_schema.load import Loaded, load
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 
+MENDED_BY_CODE = {"S241", "S242", "S245"}  # a formula that is kept as code needs no table
 TIGHTENINGS = 3  # how often the tables are made again, finer, for the fidelity horizon
 
 
@@ -138,7 +139,10 @@ def _with_tables(
     try:
         tables, terms, bounds = lower_field(plan, settings, field.form, checked.declared, progress)
     except TableError as error:
-        findings.error(error.code, _path_of(error, checked), error.message, error.remedy, key=True)
+        remedy = error.remedy
+        if field.formula is not None and error.code in MENDED_BY_CODE:
+            remedy += "; or keep the formula as code: `table: {keep: code}`"
+        findings.error(error.code, _path_of(error, checked), error.message, remedy, key=True)
     except ModuleError as error:
         findings.error("S233", ("field", "module", "call"), error.message, error.remedy)
     _stop_at_errors(checked)

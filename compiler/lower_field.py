@@ -179,7 +179,7 @@ def _tabulated(
             f"the field has a part over {len(sheet.over)} variables ({', '.join(sheet.over)}), and "
             f"a table has at most {MOST_AXES} axes",
             "split it into factors of which each reads fewer (`gain * f(x)` keeps `gain` out of "
-            "the table), make a control a constant, or keep it as code: `table: {keep: code}`",
+            "the table), or make a control a constant",
         )
     ranges = tuple(range_of(n, declared, settings.fixed.get(n)) for n in sheet.over)
     budget = settings.budget // max(1, len(plan.sheets))

@@ -87,8 +87,17 @@ def lower_fidelity(
 def _positive(value: float | str, unit: SpecUnit | None, path: Path, findings: Findings) -> float:
     found = si_value(value, unit, path, findings)
     if found is not None and found <= 0.0:
-        findings.error("S212", path, f"{path[1]} must be positive (got {value})", "write how much")
+        findings.error(
+            "S212",
+            path,
+            f"the {path[1]}{_of(path)} must be positive (got {value})",
+            "write how much",
+        )
     return found or 1.0
+
+
+def _of(path: Path) -> str:
+    return f" of '{path[2]}'" if len(path) > 2 else ""
 
 
 def _part_of_domain(
@@ -185,13 +194,16 @@ def _logged_unit(name: str, entry: TraceEntry, own: SpecUnit | None, findings: F
     return program_unit(given)
 
 
-def _values(name: str, entry: TraceEntry, declared: Declarations) -> tuple[str, ...]:
-    """The texts in the log, each at the index of the value that it means."""
+def _values(name: str, entry: TraceEntry, declared: Declarations) -> tuple[tuple[str, int], ...]:
+    """Each text that may stand in the log, and the index of the value that it means.
+
+    A value may have several texts: an arbiter's two ways to turn left may be one here.
+    """
+    meant = declared.values.get(name) or tuple(dict.fromkeys((entry.values or {}).values()))
     if entry.values is None:
-        return declared.values.get(name, ())
-    meant = declared.values.get(name) or tuple(entry.values.values())
-    raw = {value: text for text, value in entry.values.items()}
-    return tuple(raw.get(value, value) for value in meant)
+        return tuple((value, index) for index, value in enumerate(meant))
+    known = [(text, value) for text, value in entry.values.items() if value in meant]
+    return tuple((text, meant.index(value)) for text, value in known)
 
 
 def lower_judge_when(expressions: Expressions) -> Code | None:

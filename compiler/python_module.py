@@ -54,7 +54,7 @@ def _found(call: str, beside: Path) -> Callable[..., object]:
             module = importlib.import_module(module_name)
         except Exception as error:
             raise ModuleError(
-                f"{module_name} can't be imported: {type(error).__name__}: {error}",
+                f"{module_name} can't be imported ({type(error).__name__}: {error})",
                 "it is looked for beside the spec and among the installed packages",
             ) from error
     function: Callable[..., object] | None = getattr(module, name, None)

@@ -76,7 +76,7 @@ def _with_signals(spec: BehaviorSpec, scope: Scope, findings: Findings) -> Scope
     for name in signals(spec):
         entry = spec.trace[name]
         if entry.values is not None:
-            values[name] = tuple(entry.values.values())
+            values[name] = tuple(dict.fromkeys(entry.values.values()))
         unit = unit_of(entry.unit, ("trace", name, "unit"), findings)
         dimensions[name] = DIMENSIONLESS if entry.unit is None else _dimension(unit)
     return Scope(dimensions, values)

@@ -31,10 +31,16 @@ def axes_of(form: Form, declared: Declarations) -> tuple[str, ...]:
         case Arrows() | Grid():
             return form.over
         case Module():
-            readable = [s.name for s in declared.states if s.role is not Role.DRIVEN]
-            return form.over or (*readable, *(c.name for c in declared.controls))
+            return form.over or _readable(declared)
         case _:
             return ()
+
+
+def _readable(declared: Declarations) -> tuple[str, ...]:
+    """What a field may stand over: the continuous states that are sensed, and the controls."""
+    sensed = {state.name for state in declared.states if state.role is not Role.DRIVEN}
+    found = sensed & declared.continuous | {control.name for control in declared.controls}
+    return tuple(name for name in declared.register if name in found)
 
 
 def drives_of(form: Form, declared: Declarations) -> tuple[str, ...]:
@@ -47,18 +53,17 @@ def _check_axes(form: Form, declared: Declarations, findings: Findings) -> None:
     if not isinstance(form, Arrows | Grid | Module):
         return
     base: Path = ("field", type(form).__name__.lower())
-    readable = [s.name for s in declared.states if s.role is not Role.DRIVEN]
-    known = [*readable, *(c.name for c in declared.controls)]
+    known = _readable(declared)
     for i, name in enumerate(form.over or ()):
-        if name not in known:
-            remedy = did_you_mean(name, known) or f"it may stand over {', '.join(known)}"
+        if name in declared.values:
+            message = f"'{name}' is discrete, and nothing lies between its values"
+            findings.error("S207", (*base, "over", i), message, "leave it out of `over`")
+        elif name not in known:
+            remedy = did_you_mean(name, list(known)) or f"it may stand over {', '.join(known)}"
             message = (
                 f"the field can't stand over '{name}': no sensed state or control has this name"
             )
             findings.error("S207", (*base, "over", i), message, remedy)
-        elif name in declared.values:
-            message = f"'{name}' is discrete, and nothing lies between its values"
-            findings.error("S207", (*base, "over", i), message, "leave it out of `over`")
     driven = [state.name for state in declared.driven]
     drives = drives_of(form, declared)
     for i, name in enumerate(drives):

@@ -157,7 +157,7 @@ def _grid_values(
     try:
         data = _read_npy(path) if path.suffix == ".npy" else _read_csv(path, form, drives)
     except (OSError, ValueError) as error:
-        why = error.strerror if isinstance(error, OSError) else error
+        why = str(error.strerror).lower() if isinstance(error, OSError) else error
         message = f"{form.file} can't be used: {why}"
         axes = ", ".join(form.over)
         remedy = f"it needs an axis for each of {axes}, and a last one for {', '.join(drives)}"

@@ -278,8 +278,8 @@ def _jump(span: Range, place: float) -> TableError:
         "S242",
         span.name,
         f"the field jumps along {span.name} near {place:.4g} (SI), and a table would smear it",
-        "make the transition smooth (for example with tanh), move the jump into an expression that "
-        "reads only controls, or keep the field as code: `table: {keep: code}`",
+        "make the transition smooth (for example with tanh), or move the jump into a factor that "
+        "reads only controls",
     )
 
 
@@ -303,6 +303,5 @@ def _too_fine(wanted: Wanted, axes: tuple[Axis, ...]) -> TableError:
         f"the table would not stay within its budget: axis {axis.name} needs more than "
         f"{axis.count} nodes ({size / 2**20:.3g} MiB so far, the budget is "
         f"{wanted.budget / 2**20:.3g} MiB)",
-        f"loosen `table: tolerance`, shrink the domain of {axis.name}, raise `table: budget`, or "
-        "keep the field as code: `table: {keep: code}`",
+        f"loosen `table: tolerance`, shrink the domain of {axis.name}, or raise `table: budget`",
     )

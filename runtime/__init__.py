@@ -1,1 +1,1 @@
-"""The machine: the program format, interpolated fields and their kernels, integrators, recordings."""
+"""The machine: the program format, interpolated fields, their kernels, integrators, recordings."""

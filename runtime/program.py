@@ -215,8 +215,8 @@ class Binding:
     """Where a variable stands in a log: `value = scale * raw * unit.scale + offset`.
 
     The measurement at log time t speaks of time `t - delay`. `path` is empty and `constant` set
-    for a variable that was not logged and is declared constant. `values` maps texts of a
-    discrete variable or signal to indices.
+    for a variable that was not logged and is declared constant. values: of a discrete variable
+    or signal, each text that the log may hold and the index that it stands for.
     """
 
     name: str
@@ -226,7 +226,7 @@ class Binding:
     scale: float
     offset: float
     constant: float | None
-    values: tuple[str, ...]
+    values: tuple[tuple[str, int], ...]
     origin: str
 
 

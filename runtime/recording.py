@@ -92,7 +92,7 @@ def _binding(program: Program, group: str, variable: State | Control) -> Binding
         scale=1.0,
         offset=0.0,
         constant=None,
-        values=_values(variable),
+        values=tuple((text, index) for index, text in enumerate(_values(variable))),
         origin=variable.origin,
     )
 

@@ -30,7 +30,7 @@ class Formula(RootModel[Annotated[Mapping[Name, Expression], Field(min_length=1)
 
     @property
     def rates(self) -> Mapping[str, str]:
-        """The expression of each driven state's rate, in its unit per second."""
+        """The expression of each driven state's rate; quantities with units, worked out in SI."""
         return self.root
 
 
@@ -251,7 +251,9 @@ class FieldSpec(StrictModel):
 
     formula: Formula | None = Field(
         default=None,
-        description="The rate of each driven state as an expression, in its unit per second.",
+        description="The rate of each driven state as an expression. Every name in it is a "
+        "quantity with its unit, worked out in SI; the result must be of the kind of the state's "
+        "unit per second.",
         examples=[{"x": "v", "v": "-k*x - d*v"}],
     )
     arrows: Arrows | None = Field(

@@ -78,7 +78,7 @@ class StateSpec(StrictModel):
     closure: Expression | None = Field(
         default=None,
         description="The rate of a sensed variable that is assumed when the behavior runs alone, "
-        "in its unit per second (for a step map: its next value).",
+        "with the dimension of its unit per second (for a step map: its next value).",
         examples=["-speed*cos(bearing)"],
     )
     about: Text | None = Field(
@@ -116,6 +116,11 @@ class StateSpec(StrictModel):
             if self.hold is not None and self.hold not in self.values:
                 message = f"{_shown(self.hold)} is none of the values"
                 yield Mistake("S114", message, f"write one of {listed(self.values)}", ("hold",))
+        if self.role != "sensed":
+            message = (
+                f"a discrete variable is only sensed here; this one's role is {quoted(self.role)}"
+            )
+            yield Mistake("S112", message, "write 'role: sensed'", ("role",))
         for key in ("unit", "domain"):
             if getattr(self, key) is not None:
                 message = f"a discrete variable has values, no {key}"

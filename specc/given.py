@@ -65,7 +65,7 @@ def _inside(part: Part, value: Value) -> float:
     periodic = isinstance(part, State) and part.kind is Kind.PERIODIC
     if not periodic and not part.low <= found <= part.high:
         low, high = part.low / part.unit.scale, part.high / part.unit.scale
-        raise ValueError(f"{value} is outside the domain [{low:g}, {high:g}] {part.unit.text}")
+        raise ValueError(f"{value} is outside the domain [{low:g}, {high:g}]{_suffix(part)}")
     return found
 
 
@@ -87,9 +87,12 @@ def _si(value: Value, unit: Unit) -> float:
 def _example(part: Part) -> str:
     if isinstance(part, State) and part.kind is Kind.DISCRETE:
         return f"its values: {', '.join(part.values)}"
-    return (
-        f"write a number in {part.unit.text}, such as {part.name}={part.high / part.unit.scale:g}"
-    )
+    kind = "a plain number" if part.unit.text == "1" else f"a number in {part.unit.text}"
+    return f"write {kind}, such as {part.name}={part.high / part.unit.scale:g}"
+
+
+def _suffix(part: Part) -> str:
+    return "" if part.unit.text == "1" else f" {part.unit.text}"
 
 
 def _problem(code: str, name: str, value: Value, message: str, remedy: str) -> Diagnostic:

@@ -25,5 +25,4 @@ def portrait(
     try:
         return look(program, None if axes is None else tuple(axes), settings)
     except SliceError as error:
-        see = "see `specc portrait --help`"
-        raise fault("V346", program.source.file, str(error), see) from error
+        raise fault("V346", program.source.file, str(error)) from error

@@ -135,7 +135,9 @@ def _tokens(text: str) -> Iterator[Token]:
 
 
 def _too_large(what: str) -> Fault:
-    return Fault(0, 1, "S132", f"the expression {what}", "split it: name parts of it as outputs")
+    return Fault(
+        0, 1, "S132", f"the expression {what}", "write it more briefly, or as a `module` field"
+    )
 
 
 def _strange(token: Token) -> Fault:

@@ -36,7 +36,7 @@ def compile_(
     from compiler.dump import dump as dumped
     from specc import loading, printing
 
-    warmed()
+    warmed(spec)
     with progress_bar(f"compiling {spec.name}") as progress:
         compiled = loading.compile_spec(spec, progress)
     show_diagnostics(compiled.warnings)

@@ -37,7 +37,7 @@ def portrait(
     """
     from specc import loading, portraying
 
-    warmed()
+    warmed(spec)
     program = loading.load_program(spec)
     names = tuple(name.strip() for name in axes.split(",")) if axes else None
     portrayed = portraying.portrait(program, names, assignments(settings))

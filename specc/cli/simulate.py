@@ -44,7 +44,7 @@ def simulate(
     from specc.files import require_suffix
 
     require_suffix(output, ".mcap", ".csv")
-    warmed()
+    warmed(spec)
     program = loading.load_program(spec)
     begin, held = assignments(start), assignments(settings)
     rollout = running.simulate(program, begin, duration, held, every)

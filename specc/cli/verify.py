@@ -58,7 +58,7 @@ def verify(
     from verifier.report.record import as_json
     from verifier.report.text import as_text
 
-    warmed()
+    warmed(spec)
     verification = verifying.verify(trace, spec, clock.value)
     report = verification.report
     if form is Format.JSON:

@@ -1,14 +1,33 @@
 """The kernels are compiled once per installation; the user is told, and sees it progress."""
 
+from pathlib import Path
+
 from specc.cli.console import progress_bar, say
 
 
-def warmed() -> None:
-    """Compile the kernels now if this installation has not done so yet."""
+def warmed(spec: Path | None) -> None:
+    """Compile the kernels now if this installation has not done so yet.
+
+    The spec's own mistakes come first: nobody waits half a minute to be told of a typing error.
+
+    Raises:
+        SpecError: the spec has mistakes.
+    """
     from runtime.warm import is_warm, warm
 
     if is_warm():
         return
+    if spec is not None and spec.suffix != ".specc":
+        _refuse_mistakes(spec)
     say("first use: compiling specc's numerical kernels, about half a minute, once", "bold")
     with progress_bar("kernels") as progress:
         warm(progress)
+
+
+def _refuse_mistakes(spec: Path) -> None:
+    from compiler.check import check
+    from spec_schema.diagnostics import Severity, SpecError
+
+    found = check(spec)
+    if any(diagnostic.severity is Severity.ERROR for diagnostic in found):
+        raise SpecError(found)

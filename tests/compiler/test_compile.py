@@ -150,3 +150,25 @@ def test_the_dump_of_a_program_is_stable(
         program = compile_file(Path(f"specs/{name}.yaml"), lambda _what, _done, _of: None).program
 
         expect(ROOT / "tests" / "golden" / "programs" / f"{name}.txt", dump(program))
+
+
+def test_several_texts_in_a_log_may_mean_one_value(compiled: Compile) -> None:
+    text = """specc: 1
+kind: behavior
+name: lefts
+state:
+  x: {unit: "1", domain: [-1, 1], role: both, relates: {agent: a, environment: b}}
+  turn:
+    kind: discrete
+    values: [none, left]
+    role: sensed
+    relates: {agent: a, environment: b}
+field:
+  formula: {x: "where(turn == 'left', -x, x)"}
+trace:
+  x: x
+  turn: {path: action, values: {Straight: none, Slight-Left: left, Sharp-Left: left}}
+"""
+    [_, turn] = compiled(text).program.bindings
+
+    assert turn.values == (("Straight", 0), ("Slight-Left", 1), ("Sharp-Left", 1))

@@ -58,7 +58,9 @@ def complete() -> Program:
         bindings=(
             Binding("x", "/odom.x", grams, 0.1, 1.0, -0.5, None, (), NOWHERE),
             Binding("mu", "", grams, 0.0, 1.0, 0.0, 1.5, (), NOWHERE),
-            Binding("button", "/joy.b", grams, 0.0, 1.0, 0.0, None, ("up", "down"), NOWHERE),
+            Binding(
+                "button", "/joy.b", grams, 0.0, 1.0, 0.0, None, (("up", 0), ("down", 1)), NOWHERE
+            ),
         ),
         judge_when=Code("button not x 0 gt and"),
         realizes=(Realization("v", "base.speed", "set-point", NOWHERE),),

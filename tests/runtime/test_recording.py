@@ -102,7 +102,7 @@ def test_the_attached_spec_binds_its_variables_to_the_recording(data: bytes) -> 
         assert field in topics[topic][0][1]
     assert [b.name for b in found.bindings] == ["x", "v", "mode", "mu"]
     assert found.bindings[0].unit == Unit("cm", 0.01)
-    assert found.bindings[2].values == ("off", "on")
+    assert found.bindings[2].values == (("off", 0), ("on", 1))
     assert found.judge_when is None, "the recording has no button"
     kept = replace(program(), judge_when=Code("x 0 gt"))
     assert self_bound(kept).judge_when == Code("x 0 gt")

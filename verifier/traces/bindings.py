@@ -59,16 +59,24 @@ def resolve(program: Program, log: LogFile) -> tuple[Bound, ...]:
     return tuple(found)
 
 
+def texts_of(values: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
+    """Each value's own name as the text that stands for its index."""
+    return tuple((text, index) for index, text in enumerate(values))
+
+
 def _own_bindings(program: Program) -> tuple[Binding, ...]:
     """Bindings to what specc records itself, for the variables that are not bound otherwise."""
     bound = {binding.name for binding in program.bindings}
-    states = [_own_binding(program, "state", state, state.values) for state in program.states]
+    states = [_own_binding(program, "state", s, texts_of(s.values)) for s in program.states]
     controls = [_own_binding(program, "control", control, ()) for control in program.controls]
     return tuple(binding for binding in (*states, *controls) if binding.name not in bound)
 
 
 def _own_binding(
-    program: Program, group: str, variable: State | Control, values: tuple[str, ...]
+    program: Program,
+    group: str,
+    variable: State | Control,
+    values: tuple[tuple[str, int], ...],
 ) -> Binding:
     return Binding(
         name=variable.name,

@@ -10,7 +10,7 @@ import numpy as np
 from runtime.arrays import Array, Booleans, Integers, frozen
 from runtime.program import Binding, Kind, Program, State
 from spec_schema.diagnostics import Diagnostic, SpecError
-from verifier.traces.bindings import Bound, resolve, wanted_topics
+from verifier.traces.bindings import Bound, resolve, texts_of, wanted_topics
 from verifier.traces.cleaning import Ordering, order
 from verifier.traces.clock import Clock, choose_clocks, stamp_fault
 from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fault
@@ -185,7 +185,7 @@ def _measured(
 ) -> Measured:
     binding = bound.binding
     meaning = Meaning(
-        texts=binding.values or (state.values if state else ()),
+        texts=dict(binding.values or texts_of(state.values if state else ())),
         is_signal=binding.name not in program.register,
         derived=bound.derived,
     )

@@ -41,12 +41,12 @@ class Measured:
 class Meaning:
     """What the values of a column are.
 
-    texts: names of a discrete variable's values, or of a signal's. is_signal: a text that is not
-    among them is then some other value (-1), not a lost one. derived: the values are angles in
-    radians, whatever the binding's unit is.
+    texts: of a discrete variable's values, or of a signal's, and the index each stands for.
+    is_signal: a text that is not among them is then some other value (-1), not a lost one.
+    derived: the values are angles in radians, whatever the binding's unit is.
     """
 
-    texts: tuple[str, ...]
+    texts: dict[str, int]
     is_signal: bool
     derived: bool
 
@@ -55,13 +55,13 @@ def measured(binding: Binding, meaning: Meaning, column: Column) -> Measured:
     """The column as the binding means it; raises NotNumbersError."""
     if column.texts is not None:
         texts = {text for text in column.texts if text}
-        if texts & set(meaning.texts):
+        if texts & meaning.texts.keys():
             return _indices(binding, meaning, column.texts)
         if texts and texts <= _LOGIC.keys():
             return Measured(np.array([_LOGIC.get(text or "", np.nan) for text in column.texts]), ())
         words = sorted(text for text in texts if not _is_number(text))
         if words and not np.isfinite(column.numbers).any():
-            raise _not_numbers(binding, meaning.texts, words)
+            raise _not_numbers(binding, tuple(meaning.texts), words)
     unit = 1.0 if meaning.derived else binding.unit.scale
     with np.errstate(over="ignore"):  # what overflows is counted as not finite
         numbers = binding.scale * column.numbers * unit + binding.offset
@@ -83,7 +83,7 @@ def _is_number(text: str) -> bool:
 
 
 def _indices(binding: Binding, meaning: Meaning, texts: tuple[str | None, ...]) -> Measured:
-    index = {text: float(i) for i, text in enumerate(meaning.texts)}
+    index = {text: float(i) for text, i in meaning.texts.items()}
     other = -1.0 if meaning.is_signal else np.nan
     numbers = [index.get(text, other) if text else np.nan for text in texts]
     unknown = Counter(text or "" for text in texts if text not in index)
@@ -96,7 +96,7 @@ def _indices(binding: Binding, meaning: Meaning, texts: tuple[str | None, ...]) 
                 f"{binding.name}: '{text}' in {count} samples, taken as none of its values"
             )
         else:
-            known = nearest_help(text, meaning.texts, "declared").splitlines()[0]
+            known = nearest_help(text, tuple(meaning.texts), "declared").splitlines()[0]
             losses.append(Loss("undeclared value", count, f"{binding.name}: '{text}' ({known})"))
     return Measured(np.array(numbers, dtype=np.float64), tuple(losses), tuple(notes[:MOST_NOTES]))
 

@@ -166,7 +166,9 @@ def test_the_scitos_run_is_as_its_readme_says(make: Any) -> None:
     bindings = {
         "front": "front",
         "left": "left",
-        "action": make.binding("action", "action", values=actions),
+        "action": make.binding(
+            "action", "action", values=tuple(zip(actions, range(4), strict=True))
+        ),
     }
     states = [make.state("front"), make.state("left")]
     path = RECORDINGS / "scitos" / "wall_following.csv"

@@ -139,7 +139,7 @@ def test_rows_without_a_time_are_counted(workshop: Any) -> None:
 def test_texts_become_the_indices_of_declared_values(workshop: Any, make: Any) -> None:
     path = workshop.text("t,do\n0,Go\n1,Stop\n2,Fly\n3,Go\n")
     mode = make.state("mode", Kind.DISCRETE, values=("stop", "go"))
-    bound = make.binding("mode", "do", values=("Stop", "Go"))
+    bound = make.binding("mode", "do", values=(("Stop", 0), ("Go", 1)))
 
     trace = read_trace(path, make.program([mode], {"mode": bound}))
 
@@ -152,7 +152,7 @@ def test_texts_become_the_indices_of_declared_values(workshop: Any, make: Any) -
 
 def test_a_signals_other_texts_are_none_of_its_values_and_no_loss(workshop: Any, make: Any) -> None:
     path = workshop.text("t,x,do\n0,1,Go\n1,1,Stop\n2,1,Go\n")
-    bound = make.binding("action", "do", values=("Go",))
+    bound = make.binding("action", "do", values=(("Go", 0),))
 
     trace = read_trace(path, make.program([make.state("x")], {"x": "x", "action": bound}))
 
