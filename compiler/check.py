@@ -1,5 +1,6 @@
 """What can be told of a spec without tabulating it and without running anything of the author's."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import final
@@ -14,8 +15,9 @@ from compiler.read_expressions import Expressions, read_expressions
 from compiler.references import check_references
 from runtime.program import Binding, Fidelity
 from spec_schema.behavior import BehaviorSpec
-from spec_schema.diagnostics import Diagnostic, SpecError
-from spec_schema.load import Loaded, load
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.load import Examined, Loaded, examine
+from spec_schema.source import Span
 
 
 @final
@@ -35,12 +37,29 @@ class Checked:
 def check(path: Path) -> tuple[Diagnostic, ...]:
     """Every mistake in the spec at `path`, and every doubt."""
     try:
-        loaded = load(path)
+        return check_examined(examine(path))
     except SpecError as error:
         return error.diagnostics
-    if not isinstance(loaded.spec, BehaviorSpec):
-        return ()
-    return check_behavior(loaded, loaded.spec).findings.diagnostics
+
+
+def check_examined(examined: Examined) -> tuple[Diagnostic, ...]:
+    """The mistakes in the spec's shape, and what the passes say of the rest of it."""
+    loaded = examined.loaded
+    if loaded is None or not isinstance(loaded.spec, BehaviorSpec):
+        return examined.mistakes
+    found = check_behavior(loaded, loaded.spec).findings.diagnostics
+    told = {mistake.span for mistake in examined.mistakes}
+    return (*examined.mistakes, *(d for d in found if _is_news(d, examined.lost, told)))
+
+
+def _is_news(found: Diagnostic, lost: Collection[str], told: Collection[Span | None]) -> bool:
+    """Whether a finding is no mere consequence of a mistake that is told already.
+
+    Warnings wait until the mistakes are mended.
+    """
+    if told and found.severity is Severity.WARNING:
+        return False
+    return found.span not in told and not any(f"'{name}'" in found.message for name in lost)
 
 
 def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias, final
 
-from compiler.check import Checked, check_behavior
+from compiler.check import Checked, check_behavior, check_examined
 from compiler.horizon import excess
 from compiler.lower_field import Settings, formula_codes, lower_field, measured, settings_of
 from compiler.lower_parts import (
@@ -34,7 +34,7 @@ from runtime.program import Field, Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Formula, Step
-from spec_schema.load import Loaded, load
+from spec_schema.load import Loaded, examine
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 
@@ -57,7 +57,10 @@ def compile_file(path: Path, progress: Progress) -> Compiled:
     Raises:
         SpecError: with everything that is wrong with it.
     """
-    return compile_loaded(load(path), progress)
+    examined = examine(path)
+    if examined.mistakes or examined.loaded is None:
+        raise SpecError(check_examined(examined))
+    return compile_loaded(examined.loaded, progress)
 
 
 def compile_loaded(loaded: Loaded, progress: Progress) -> Compiled:

@@ -10,6 +10,7 @@ from spec_schema.kinds import MODELS, AnySpec
 from spec_schema.mistake import Mistake
 from spec_schema.node import Plain, plain
 from spec_schema.places import Path, Places, dotted
+from spec_schema.salvage import salvage
 from spec_schema.shape import check_shape
 from spec_schema.source import Source, Span
 from spec_schema.suggest import did_you_mean, nearest
@@ -64,8 +65,32 @@ class Loaded:
         return self.places.origin(path)
 
 
+@final
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """A spec with its mistakes, and as much of it as can be checked on.
+
+    loaded: the spec, without the parts that are wrong; None where too little is left.
+    lost: the declared names that were taken out; nothing more can be said about them.
+    """
+
+    mistakes: tuple[Diagnostic, ...]
+    loaded: Loaded | None
+    lost: frozenset[str]
+
+
 def load(path: FilePath) -> Loaded:
-    """Read and check a spec file; raises SpecError with everything that is wrong."""
+    """Read and check a spec file; raises SpecError with everything that is wrong with its shape."""
+    return _sound(examine(path))
+
+
+def load_source(source: Source) -> Loaded:
+    """Check a spec's text; raises SpecError with everything that is wrong with its shape."""
+    return _sound(examine_source(source))
+
+
+def examine(path: FilePath) -> Examined:
+    """Read a spec file as far as it can be read; raises SpecError where it is no YAML for us."""
     name = str(path)
     try:
         with path.open("rb") as file:
@@ -77,18 +102,29 @@ def load(path: FilePath) -> Loaded:
     source, problems = decode(name, data)
     if problems:
         raise SpecError(problems)
-    return load_source(source)
+    return examine_source(source)
 
 
-def load_source(source: Source) -> Loaded:
-    """Check a spec's text; raises SpecError with everything that is wrong."""
+def examine_source(source: Source) -> Examined:
+    """Check a spec's text as far as possible; raises SpecError where it is no YAML for us."""
     root = read(source)
     places = Places(source, root)
     data = {name: plain(entry.value) for name, entry in root.entries.items()}
-    shape = check_shape(_model_of(data), data)
-    if shape.spec is None:
-        raise SpecError(first_ones(_diagnostic(places, mistake) for mistake in shape.mistakes))
-    return Loaded(source, shape.spec, places)
+    model = _model_of(data)
+    shape = check_shape(model, data)
+    if shape.spec is not None:
+        return Examined((), Loaded(source, shape.spec, places), frozenset())
+    mistakes = first_ones(_diagnostic(places, mistake) for mistake in shape.mistakes)
+    rest = salvage(model, data)
+    if rest is None:
+        return Examined(mistakes, None, frozenset())
+    return Examined(mistakes, Loaded(source, rest.spec, places), rest.lost)
+
+
+def _sound(examined: Examined) -> Loaded:
+    if examined.mistakes or examined.loaded is None:
+        raise SpecError(examined.mistakes)
+    return examined.loaded
 
 
 def _model_of(data: dict[str, Plain]) -> type[AnySpec]:
