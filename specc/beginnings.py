@@ -11,14 +11,29 @@ from specc.faults import fault
 
 def templates() -> dict[str, str]:
     """The texts of the specs that specc ships, by name."""
+    return {
+        name.removesuffix(".yaml"): text
+        for name, text in _library().items()
+        if name.endswith(".yaml")
+    }
+
+
+def companions(template: str) -> dict[str, str]:
+    """The Python modules that a template's field calls, by file name."""
+    called = re.findall(r'call: "?(\w+):', templates().get(template, ""))
+    return {name: text for name, text in _library().items() if name.removesuffix(".py") in called}
+
+
+def _library() -> dict[str, str]:
     folder = resources.files("specc") / "templates"
     if not folder.is_dir():  # an editable install: the library stands at the repository's root
         folder = Path(__file__).resolve().parent.parent / "specs"
-    found = {}
-    for entry in sorted(folder.iterdir(), key=lambda e: e.name):
-        if entry.name.endswith(".yaml"):
-            found[entry.name.removesuffix(".yaml")] = entry.read_text(encoding="utf-8")
-    return found
+    entries = sorted(folder.iterdir(), key=lambda entry: entry.name)
+    return {
+        entry.name: entry.read_text(encoding="utf-8")
+        for entry in entries
+        if entry.name.endswith((".yaml", ".py"))
+    }
 
 
 def list_templates() -> str:

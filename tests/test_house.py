@@ -4,6 +4,8 @@ import importlib
 import subprocess
 import sys
 import time
+import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +13,7 @@ import specc
 from runtime import code
 from spec_schema.expressions import tree
 
+ROOT = Path(__file__).parents[1]
 HEAVY = ("numba", "scipy", "matplotlib", "pint", "sympy", "networkx", "rosbags", "mcap")
 
 
@@ -52,6 +55,16 @@ def test_help_starts_fast() -> None:
     # Designed for 0.35 s above a bare interpreter; a machine that tests may be thrice as busy.
     command = ("-c", "from specc.cli import main; main(['--help'])")
     assert min(seconds(*command) - seconds("-c", "pass") for _ in range(3)) < 1.0
+
+
+def test_every_spec_of_the_library_is_shipped_as_a_template() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    shipped = settings["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
+    library = {
+        f"specs/{p.name}" for p in (ROOT / "specs").iterdir() if p.suffix in {".yaml", ".py"}
+    }
+
+    assert shipped.keys() == library
 
 
 def test_the_language_and_the_machine_have_the_same_operations() -> None:

@@ -40,19 +40,25 @@ def init(
     if listing:
         print_text(beginnings.list_templates())
         return
-    if log is not None:
-        from specc.first_spec import spec_for
-        from specc.inventory_text import describe
-        from verifier.traces.inventory import inspect
-
-        inventory = inspect(log)
-        print_text(describe(inventory))
-        name = beginnings.identifier(name or log.stem)
-        text = spec_for(inventory, name)
-    else:
-        text = beginnings.from_template(template, name or template)
-    path = output or Path(f"{name or template}.yaml")
-    if path.exists():
-        raise typer.BadParameter(f"{path} exists already; name another file with -o")
+    name = beginnings.identifier(name or (log.stem if log else template))
+    path = output or Path(f"{name}.yaml")
+    companions = {} if log else beginnings.companions(template)
+    for wanted in (path, *(path.parent / module for module in companions)):
+        if wanted.exists():
+            raise typer.BadParameter(f"{wanted} exists already; name another file with -o")
+    text = _from_log(log, name) if log else beginnings.from_template(template, name)
+    for module, source in companions.items():
+        write_atomically(path.parent / module, source.encode())
     write_atomically(path, text.encode())
-    say(f"wrote {path}; next: specc check {path}", "bold")
+    say(f"wrote {' and '.join(map(str, (path, *companions)))}; next: specc check {path}", "bold")
+
+
+def _from_log(log: Path, name: str) -> str:
+    """A first spec for a log, which is listed on the way."""
+    from specc.first_spec import spec_for
+    from specc.inventory_text import describe
+    from verifier.traces.inventory import inspect
+
+    inventory = inspect(log)
+    print_text(describe(inventory))
+    return spec_for(inventory, name)

@@ -168,6 +168,11 @@ def test_init_writes_a_spec_that_checks(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["init", "rhythm"]) == 2, "a file that exists is not overwritten"
 
 
+def test_init_brings_the_module_that_a_template_calls() -> None:
+    assert main(["init", "orbit", "--template", "circling"]) == 0
+    assert main(["compile", "orbit.yaml"]) == 0
+
+
 def test_init_from_a_log_lists_it_and_writes_a_spec_that_verifies(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
