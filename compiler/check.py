@@ -13,6 +13,7 @@ from compiler.lower_parts import (
 )
 from compiler.read_expressions import Expressions, read_expressions
 from compiler.references import check_references
+from compiler.settings import Settings, settings_of
 from runtime.program import Binding, Fidelity
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
@@ -31,6 +32,7 @@ class Checked:
     expressions: Expressions
     fidelity: Fidelity | None
     bindings: tuple[Binding, ...]
+    settings: Settings
     findings: Findings
 
 
@@ -69,5 +71,6 @@ def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:
     expressions = read_expressions(spec, declared, findings)
     fidelity = lower_fidelity(spec, declared, loaded, findings)
     bindings = lower_bindings(spec, declared, loaded, findings)
+    settings = settings_of(spec, declared, findings)
     check_references(spec, declared, expressions, findings)
-    return Checked(loaded, spec, declared, expressions, fidelity, bindings, findings)
+    return Checked(loaded, spec, declared, expressions, fidelity, bindings, settings, findings)

@@ -17,7 +17,7 @@ from typing import TypeAlias, final
 
 from compiler.check import Checked, check_behavior, check_examined
 from compiler.horizon import excess
-from compiler.lower_field import Settings, formula_codes, lower_field, measured, settings_of
+from compiler.lower_field import formula_codes, lower_field, measured
 from compiler.lower_parts import (
     lower_feasibility,
     lower_judge_when,
@@ -28,7 +28,7 @@ from compiler.lower_parts import (
 )
 from compiler.plan import Plan, plan_formula, plan_sampled
 from compiler.python_module import ModuleError
-from compiler.quantities import SECOND, si_value
+from compiler.settings import Settings
 from compiler.tabulate import TableError
 from runtime.program import Field, Program
 from spec_schema.behavior import BehaviorSpec
@@ -69,12 +69,10 @@ def compile_loaded(loaded: Loaded, progress: Progress) -> Compiled:
         message = f"a {loaded.spec.kind} is not compiled; a behavior is"
         raise SpecError([loaded.error("S200", ("kind",), message, "name a behavior spec")])
     checked = check_behavior(loaded, loaded.spec)
-    settings = settings_of(checked.spec, checked.declared, checked.findings)
     _stop_at_errors(checked)
-    field = _untabulated(checked)
-    program = _assembled(checked, field)
+    program = _assembled(checked, _untabulated(checked))
     if checked.spec.table.keep == "tables":
-        program = _tabulated(checked, program, settings, progress)
+        program = _tabulated(checked, program, progress)
     _stop_at_errors(checked)
     warnings = tuple(d for d in checked.findings.diagnostics if d.severity is Severity.WARNING)
     return Compiled(program, warnings)
@@ -87,39 +85,22 @@ def _stop_at_errors(checked: Checked) -> None:
 
 def _untabulated(checked: Checked) -> Field:
     """The field as far as it is known before anything is tabulated: its form and formula."""
-    spec, findings = checked.spec, checked.findings
-    form = spec.field.form
-    name = type(form).__name__.lower()
-    every = 0.0
-    if isinstance(form, Step):
-        every = si_value(form.every, SECOND, ("field", "step", "every"), findings) or 0.0
-        if every <= 0.0:
-            findings.error(
-                "S212",
-                ("field", "step", "every"),
-                f"a step must take some time (got {form.every})",
-                "write `every: 0.1 s`",
-            )
+    form = checked.spec.field.form
+    name, every = type(form).__name__.lower(), checked.settings.every
     driven = tuple(state.name for state in checked.declared.driven)
     field = Field(driven, name, every, (), (), (), None, checked.loaded.origin(("field",)))
     if isinstance(form, Formula | Step):
         return formula_codes(checked.expressions.rates, field)
-    if spec.table.keep == "code":
-        message = f"a field given as {name} has no formula that could be kept as code"
-        findings.error("S246", ("table", "keep"), message, "write `keep: tables`")
-    _stop_at_errors(checked)
     return field
 
 
-def _tabulated(
-    checked: Checked, program: Program, settings: Settings, progress: Progress
-) -> Program:
+def _tabulated(checked: Checked, program: Program, progress: Progress) -> Program:
     """The program with tables that are good enough for its own fidelity tolerance."""
-    plan = _plan(checked)
+    plan, settings = _plan(checked), checked.settings
     for _ in range(TIGHTENINGS):
         field = _with_tables(checked, program, plan, settings, progress)
         made = measured(replace(program, field=field))
-        worst = max(excess(made).values(), default=0.0)
+        worst = max([*excess(made).values(), *_over_tolerance(made)], default=0.0)
         if worst <= 1.0:
             return made
         settings = replace(settings, strictness=2.0 * worst * settings.strictness)
@@ -128,11 +109,15 @@ def _tabulated(
         ("fidelity", "horizon"),
         f"carried to the horizon, the tables' error is {worst:.2g} times what it may be: a tenth "
         "of the fidelity tolerance",
-        "shorten the horizon, declare a smaller `table: tolerance`, or keep the field as code: "
-        "`table: {keep: code}`",
+        "shorten the horizon, or keep the field as code: `table: {keep: code}`",
         key=True,
     )
     return made
+
+
+def _over_tolerance(program: Program) -> list[float]:
+    """How many times each rate's tolerance its measured error is."""
+    return [bound.measured / bound.tolerance for bound in program.field.bounds]
 
 
 def _with_tables(
@@ -140,7 +125,7 @@ def _with_tables(
 ) -> Field:
     field, findings = program.field, checked.findings
     try:
-        tables, terms, bounds = lower_field(plan, settings, field.form, checked.declared, progress)
+        tables, terms, bounds = lower_field(program, plan, settings, checked.declared, progress)
     except TableError as error:
         remedy = error.remedy
         if field.formula is not None and error.code in MENDED_BY_CODE:

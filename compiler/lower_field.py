@@ -1,24 +1,29 @@
 """Pass 6: sheets become tables, tables become the field of a program, and its error is measured."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import TypeAlias, final
+from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
 from compiler.declare import Declarations
-from compiler.findings import Findings
 from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet
-from compiler.quantities import per_second, si_value
+from compiler.settings import Settings
 from compiler.sketched import range_of
-from compiler.tabulate import MARGIN, ROUNDING, TableError, Tabulated, Wanted, tabulate_function
+from compiler.tabulate import (
+    MARGIN,
+    ROUNDING,
+    SEED,
+    TableError,
+    Tabulated,
+    Wanted,
+    tabulate_function,
+)
 from runtime.arrays import Array
 from runtime.flow import Source, flow_of, next_states, rates
 from runtime.program import Control, ErrorBound, Field, Kind, Method, Program, State, Table, Term
-from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.tree import Expr
-from spec_schema.field_forms import Step
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 
@@ -35,55 +40,16 @@ SURVEY = 4_096  # points that tell how large a column is
 SPOTS = 40_000  # points that measure the whole field against its formula
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """How the tables shall be.
-
-    tolerance: (m,) of the driven states' rates, in SI; None where the spec declares none.
-    strictness: what the tolerances that the compiler chose itself are divided by.
-    """
-
-    method: Method
-    tolerance: tuple[float | None, ...]
-    fixed: Mapping[str, int]
-    budget: int
-    strictness: float = 1.0
-
-
-def settings_of(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Settings:
-    """The `table:` block in SI."""
-    is_map = isinstance(spec.field.form, Step)
-    found: list[float | None] = []
-    for state in declared.driven:
-        unit = declared.units.get(state.name)
-        given = spec.table.tolerance.get(state.name)
-        path = ("table", "tolerance", state.name)
-        value = None
-        if given is not None and unit is not None:
-            wanted = unit if is_map else per_second(unit)
-            value = si_value(given, wanted, path, findings)
-        if value is not None and value <= 0.0:
-            findings.error(
-                "S212",
-                path,
-                f"a tolerance must be positive (got {given})",
-                "write how far the table may be off",
-            )
-        found.append(value)
-    method = Method(spec.table.method)
-    return Settings(method, tuple(found), spec.table.nodes, spec.table.budget)
-
-
 def lower_field(
-    plan: Plan, settings: Settings, form: str, declared: Declarations, progress: Progress
+    program: Program, plan: Plan, settings: Settings, declared: Declarations, progress: Progress
 ) -> tuple[tuple[Table, ...], tuple[Term, ...], tuple[ErrorBound, ...]]:
     """The tables and terms of a field, and how far each driven state's rate may be off.
 
     Raises:
         TableError: a sheet can't be tabulated within tolerance and budget.
     """
-    tolerance = _tolerances(plan, settings, form, declared)
+    largest = _largest_rates(program, plan, declared)
+    tolerance = _tolerances(largest, settings, program.field.form)
     tables: list[Table] = []
     terms = [Term(use.component, use.coefficient, -1, 0) for use in plan.alone]
     error = np.zeros(len(declared.driven))
@@ -115,12 +81,12 @@ def formula_codes(rates_of: Mapping[str, Expr], field: Field) -> Field:
 def measured(program: Program) -> Program:
     """The program with its bounds measured as a whole, tables against formula, on fresh points.
 
-    The sum of the sheets' errors stays where it is smaller: both are estimates of the same.
+    The sum of the sheets' errors stays where it is larger: both are estimates of the same.
     """
     if program.field.formula is None or not program.field.terms:
         return program
-    points = _points(program, np.random.default_rng(SPOTS))
-    x, u = points[:, : len(program.states)], points[:, len(program.states) :]
+    points = _points(program, np.random.default_rng(SEED + 1))
+    x, u = _split(program, points)
     run = next_states if program.field.is_map else rates
     by_tables, by_formula = (
         run(flow_of(program, source), x, u)[:, list(program.driven)]
@@ -135,6 +101,11 @@ def measured(program: Program) -> Program:
     return replace(program, field=replace(program.field, bounds=bounds))
 
 
+def _split(program: Program, points: Array) -> tuple[Array, Array]:
+    """States and controls of points over both."""
+    return points[:, : len(program.states)], points[:, len(program.states) :]
+
+
 def _points(program: Program, rng: np.random.Generator) -> Array:
     parts: tuple[State | Control, ...] = (*program.states, *program.controls)
     low, high = [p.low for p in parts], [p.high for p in parts]
@@ -145,26 +116,33 @@ def _points(program: Program, rng: np.random.Generator) -> Array:
     return points
 
 
-def _tolerances(plan: Plan, settings: Settings, form: str, declared: Declarations) -> Array:
-    """Absolute tolerances (m,) of the rates: declared, or relative to the largest rate."""
-    share = RELATIVE.get((form, settings.method), RELATIVE_LINEAR)
-    rng = np.random.default_rng(SURVEY)
-    size = np.zeros(len(declared.driven))
-    for use in plan.alone:
-        size[use.component] += use.largest
-    for sheet in plan.sheets:
+def _largest_rates(program: Program, plan: Plan, declared: Declarations) -> Array:
+    """How large the rates (m,) of the driven states become, on random points."""
+    if program.field.formula is not None:
+        x, u = _split(program, _points(program, np.random.default_rng(SEED)))
+        run = next_states if program.field.is_map else rates
+        found = run(flow_of(program, Source.FORMULA), x, u)[:, list(program.driven)]
+        sizes = np.abs(found)
+    else:
+        [sheet] = plan.sheets
         ranges = [range_of(name, declared) for name in sheet.over]
+        rng = np.random.default_rng(SEED)
         places = rng.uniform(
             [r.low for r in ranges], [r.high for r in ranges], (SURVEY, len(ranges))
         )
-        values = np.abs(sheet.sample(places))
-        largest = np.nanmax(np.where(np.isfinite(values), values, 0.0), axis=0)
-        for use in sheet.uses:
-            finite = use.largest if np.isfinite(use.largest) else 1.0
-            size[use.component] += finite * largest[use.column]
-    chosen = np.where(size > 0.0, share * size, 1e-12) / settings.strictness
-    given = settings.tolerance
-    return np.array([c if g is None else g for c, g in zip(chosen, given, strict=True)])
+        columns = {use.component: use.column for use in sheet.uses}
+        sizes = np.abs(sheet.sample(places))[:, [columns[i] for i in sorted(columns)]]
+    largest: Array = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
+    return largest
+
+
+def _tolerances(largest: Array, settings: Settings, form: str) -> Array:
+    """Absolute tolerances (m,) of the rates: declared, or relative to the largest rate."""
+    share = RELATIVE.get((form, settings.method), RELATIVE_LINEAR)
+    chosen = np.where(largest > 0.0, share * largest, 1e-12)
+    return np.array(
+        [c if g is None else g for c, g in zip(chosen, settings.tolerance, strict=True)]
+    )
 
 
 def _tabulated(
@@ -183,7 +161,7 @@ def _tabulated(
         )
     ranges = tuple(range_of(n, declared, settings.fixed.get(n)) for n in sheet.over)
     budget = settings.budget // max(1, len(plan.sheets))
-    shares = _column_tolerance(sheet, plan, tolerance)
+    shares = _column_tolerance(sheet, plan, tolerance) / settings.strictness
     return tabulate_function(Wanted(sheet.sample, ranges, shares, settings.method, budget))
 
 

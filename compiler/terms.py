@@ -8,6 +8,7 @@ Discrete states are dealt with value by value: [mode = 0] * f0 + [mode = 1] * f1
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from itertools import product
 from typing import final
 
@@ -15,6 +16,17 @@ from spec_schema.expressions.rewrite import names_in, simplify, substitute
 from spec_schema.expressions.tree import Apply, Expr, Name, Number
 
 MOST_TERMS = 48  # a product that would expand further stays as it is
+MOST_CASES = 256  # combinations of discrete values in one term
+ALWAYS: Expr = Number(1.0)
+
+
+@final
+class TooManyCasesError(Exception):
+    """One term tells more combinations of discrete values apart than can be tabulated."""
+
+    def __init__(self, names: list[str], combinations: int) -> None:
+        self.names, self.combinations = names, combinations
+        super().__init__(f"{combinations} combinations of {', '.join(names)}")
 
 
 @final
@@ -34,24 +46,34 @@ def summands(
     discrete: how many values each discrete state has.
     """
     found: list[Summand] = []
-    for indicator, special in _cases(simplify(expr), discrete):
-        for term in _expanded(special, continuous):
-            summand = _split(term, continuous)
-            found.append(Summand(simplify(_times(indicator, summand.coefficient)), summand.part))
+    for whole in _expanded(simplify(expr), continuous):
+        for case, special in _cases(whole, discrete):
+            for term in _expanded(special, continuous):
+                summand = _split(term, continuous)
+                found.append(Summand(_only_in(case, summand.coefficient), summand.part))
     return _joined(found)
 
 
+def _only_in(case: Expr, coefficient: Expr) -> Expr:
+    """The coefficient in its case, else 0: not a product, since 0 times infinity is no number."""
+    if case == ALWAYS:
+        return coefficient
+    return Apply("where", (case, coefficient, Number(0.0)))
+
+
 def _cases(expr: Expr, discrete: Mapping[str, int]) -> Iterator[tuple[Expr, Expr]]:
+    """The expression for each combination of discrete values, and the condition for it."""
     read = sorted(names_in(expr) & discrete.keys())
+    combinations = math.prod(discrete[name] for name in read)
+    if combinations > MOST_CASES:
+        raise TooManyCasesError(read, combinations)
     for values in product(*(range(discrete[name]) for name in read)):
         chosen: dict[str, Expr] = {
             name: Number(float(value)) for name, value in zip(read, values, strict=True)
         }
         tests: list[Expr] = [Apply("eq", (Name(name), value)) for name, value in chosen.items()]
-        indicator: Expr = Number(1.0)
-        for test in tests:
-            indicator = _times(indicator, test)
-        yield indicator, simplify(substitute(expr, chosen))
+        case = reduce(lambda a, b: Apply("and", (a, b)), tests, ALWAYS) if tests else ALWAYS
+        yield case, simplify(substitute(expr, chosen))
 
 
 def _expanded(  # noqa: PLR0911  one return for each operation
