@@ -10,6 +10,7 @@ lower field     tables with measured error bounds                 6
 horizon         table errors, carried to the fidelity horizon     7
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,10 +27,11 @@ from compiler.lower_parts import (
     lower_states,
     origin_of,
 )
-from compiler.plan import Plan, plan_formula, plan_sampled
+from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
 from compiler.python_module import ModuleError
 from compiler.settings import Settings
 from compiler.tabulate import TableError
+from compiler.terms import TooManyCasesError
 from runtime.program import Field, Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
@@ -107,8 +109,9 @@ def _tabulated(checked: Checked, program: Program, progress: Progress) -> Progra
     checked.findings.error(
         "S247",
         ("fidelity", "horizon"),
-        f"carried to the horizon, the tables' error is {worst:.2g} times what it may be: a tenth "
-        "of the fidelity tolerance",
+        "carried to the horizon, the tables' error is more than "
+        f"{10.0 ** math.floor(math.log10(worst)):g} times what it may be: a tenth of the fidelity "
+        "tolerance",
         "shorten the horizon, or keep the field as code: `table: {keep: code}`",
         key=True,
     )
@@ -139,12 +142,28 @@ def _with_tables(
 
 def _plan(checked: Checked) -> Plan:
     if isinstance(checked.spec.field.form, Formula | Step):
-        return plan_formula(checked.expressions.rates, checked.declared)
+        return _plan_formula(checked)
     beside = Path(checked.loaded.source.name).resolve().parent
     plan = plan_sampled(checked.spec, checked.declared, beside, checked.findings)
     _stop_at_errors(checked)
     assert plan is not None, "a plan that can't be made leaves an error"
     return plan
+
+
+def _plan_formula(checked: Checked) -> Plan:
+    form = checked.spec.field.form
+    base = ("field", "formula") if isinstance(form, Formula) else ("field", "step", "next")
+    try:
+        return plan_formula(checked.expressions.rates, checked.declared)
+    except UnboundedError as error:
+        message = f"the factor {error.coefficient} is not finite all over the controls' domains"
+        remedy = "shrink the domain of a control so that it leaves the place out"
+        checked.findings.error("S243", (*base, error.state), message, remedy)
+    except TooManyCasesError as error:
+        message = f"a term tells {error.combinations} combinations of discrete values apart"
+        remedy = "split it into a sum of terms, or keep it as code: `table: {keep: code}`"
+        checked.findings.error("S245", base, message, remedy, key=True)
+    raise SpecError(checked.findings.diagnostics)
 
 
 def _path_of(error: TableError, checked: Checked) -> tuple[str, ...]:

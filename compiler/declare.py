@@ -1,5 +1,6 @@
 """Pass 1: what is declared. Units, domains, defaults and names, as numbers in SI."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import final
@@ -118,6 +119,9 @@ def _limits(
         return 0.0, 1.0
     low, high = (si_limit(v, unit, (*path, i), findings) for i, v in enumerate(domain))
     if low is None or high is None:
+        return 0.0, 1.0
+    if not (math.isfinite(low) and math.isfinite(high)):
+        findings.error("S202", path, "a domain has finite limits", "write two numbers: [-2, 2]")
         return 0.0, 1.0
     if not low < high:
         message = f"the lower limit {domain[0]} is not below the upper limit {domain[1]}"

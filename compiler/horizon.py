@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from runtime.arrays import Array
+from runtime.arrays import Array, frozen
 from runtime.flow import Source, flow_of
 from runtime.integrators import adaptive, fixed_steps
 from runtime.program import Fidelity, Kind, Program
@@ -42,10 +42,11 @@ def _ends(program: Program, source: Source, x: Array, u: Array, horizon: float) 
     """Where the starts come on the way to the horizon: (k * STARTS, n), NaN once outside."""
     flow, n = flow_of(program, source), len(program.states)
     if program.field.is_map:
-        times = program.field.every * np.arange(1 + max(1, round(horizon / program.field.every)))
+        steps = max(1, round(horizon / program.field.every))
+        times = frozen(program.field.every * np.arange(steps + 1))
         columns = np.arange(n, n + u.shape[1])
         return fixed_steps(flow, x, times, u[:, None, :], columns).states[:, 1:].reshape(-1, n)
-    times = np.array([0.0, horizon / 2, horizon])
+    times = frozen([0.0, horizon / 2, horizon])
     return adaptive(flow, x, u, times, ACCURACY, ACCURACY).states[:, 1:].reshape(-1, n)
 
 

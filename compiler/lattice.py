@@ -19,10 +19,27 @@ def is_even(nodes: Array, low: float, high: float, *, periodic: bool) -> bool:
     return bool(np.allclose(nodes, low + step * np.arange(count), rtol=0.0, atol=1e-9 * step))
 
 
-def between_nodes(nodes: tuple[Array, ...], values: Array, method: Method) -> Sampler:
+def closed(
+    nodes: tuple[Array, ...],
+    values: Array,
+    periodic: tuple[bool, ...],
+    highs: tuple[float, ...],
+) -> tuple[tuple[Array, ...], Array]:
+    """Nodes and values with the upper end of every periodic axis, where its first value returns."""
+    for i, turns in enumerate(periodic):
+        if turns:
+            first = np.take(values, [0], axis=i)
+            values = np.concatenate([values, first], axis=i)
+    ends = zip(nodes, periodic, highs, strict=True)
+    return tuple(np.append(at, high) if turns else at for at, turns, high in ends), values
+
+
+def between_nodes(
+    nodes: tuple[Array, ...], values: Array, method: Method, periodic: tuple[bool, ...]
+) -> Sampler:
     """The interpolant of `values` (n1, ..., nd, m) at uneven `nodes`, inside their box.
 
-    cubic: a tensor-product spline with not-a-knot ends; linear: multilinear.
+    cubic: a tensor-product spline with not-a-knot ends, or a periodic one; linear: multilinear.
     """
     if method is Method.LINEAR:
         surface = scipy.interpolate.RegularGridInterpolator(nodes, values, method="linear")
@@ -30,9 +47,18 @@ def between_nodes(nodes: tuple[Array, ...], values: Array, method: Method) -> Sa
 
     def sample(points: Array) -> Array:
         found = np.broadcast_to(values, (len(points), *values.shape))
-        for at, place in zip(nodes, points.T, strict=True):
-            weights = scipy.interpolate.make_interp_spline(at, np.eye(len(at)), k=3)(place)
+        for at, place, turns in zip(nodes, points.T, periodic, strict=True):
+            weights = _weights(at, turns=turns)(place)
             found = np.einsum("pn,pn...->p...", weights, found)
         return found
 
     return sample
+
+
+def _weights(at: Array, *, turns: bool) -> "scipy.interpolate.BSpline":
+    """What each node's value counts for at a place along the axis."""
+    unit = np.eye(len(at))
+    if not turns:
+        return scipy.interpolate.make_interp_spline(at, unit, k=3)
+    unit[-1] = unit[0]  # the upper end is the lower one
+    return scipy.interpolate.make_interp_spline(at, unit, k=3, bc_type="periodic")

@@ -9,6 +9,7 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet
+from compiler.references import MOST_AXES
 from compiler.settings import Settings
 from compiler.sketched import range_of
 from compiler.tabulate import (
@@ -27,7 +28,6 @@ from spec_schema.expressions.tree import Expr
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 
-MOST_AXES = 5
 RELATIVE = {  # of the largest rate, where the spec declares no tolerance
     ("formula", Method.CUBIC): 1e-6,
     ("step", Method.CUBIC): 1e-6,

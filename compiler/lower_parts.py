@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from compiler.declare import Declarations, program_unit
 from compiler.findings import Findings
-from compiler.quantities import SECOND, si_limit, si_value, unit_of
+from compiler.quantities import ONE, SECOND, si_limit, si_value, unit_of
 from compiler.read_expressions import Expressions
 from runtime.code import Code
 from runtime.program import (
@@ -72,7 +72,10 @@ def lower_fidelity(
     }
     horizon = _positive(spec.fidelity.horizon, SECOND, (*base, "horizon"), findings)
     region = {}
+    variables = {variable.name for variable in declared.variables}
     for name, limits in spec.fidelity.region.items():
+        if name not in variables:
+            continue  # told with the other references
         path = (*base, "region", name)
         pair = [
             si_limit(v, declared.units.get(name), (*path, i), findings)
@@ -158,7 +161,8 @@ def _constant(
 ) -> float | None:
     values = declared.values.get(name)
     if values is None:
-        return si_value(value, declared.units.get(name), path, findings)
+        found = si_value(value, declared.units.get(name), path, findings)
+        return _in_domain(name, found, declared, path, findings)
     if value in values:
         return float(values.index(str(value)))
     findings.error(
@@ -167,10 +171,26 @@ def _constant(
     return None
 
 
+def _in_domain(
+    name: str, value: float | None, declared: Declarations, path: Path, findings: Findings
+) -> float | None:
+    """The value, with a finding where it lies outside the domain of its variable."""
+    named = [variable for variable in declared.variables if variable.name == name]
+    for variable in named:
+        if value is not None and not variable.low <= value <= variable.high:
+            scale = variable.unit.scale
+            limits = f"[{variable.low / scale:g}, {variable.high / scale:g}]"
+            message = f"{value / scale:g} is outside the domain {limits}"
+            findings.error("S203", path, message, "move one of them")
+    return value
+
+
 def _offset(entry: TraceEntry, own: SpecUnit | None, path: Path, findings: Findings) -> float:
-    if entry.offset == 0.0 or own is None:
+    """The offset in SI: in the variable's unit, of a signal in the unit of its entry."""
+    if entry.offset == 0.0:
         return 0.0
-    return si_value(entry.offset, own, path, findings) or 0.0
+    unit = own or (ONE if entry.unit is None else unit_of(entry.unit, path, findings))
+    return si_value(entry.offset, unit, path, findings) or 0.0
 
 
 def _logged_unit(name: str, entry: TraceEntry, own: SpecUnit | None, findings: Findings) -> Unit:

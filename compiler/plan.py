@@ -4,6 +4,7 @@ A formula is split into sums of c(controls) * t(states), and the t that stand ov
 variables share a sheet; a sketch, an array or a module is one sheet with a column per driven state.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -25,6 +26,7 @@ from runtime.machine import evaluate
 from runtime.program import Kind, Table
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.bounds import bounds
+from spec_schema.expressions.printers.text import to_text
 from spec_schema.expressions.rewrite import names_in, simplify, substitute
 from spec_schema.expressions.tree import Expr, Number
 from spec_schema.field_forms import Arrows, Grid, Module
@@ -60,6 +62,15 @@ class Sheet:
 
 
 @final
+class UnboundedError(Exception):
+    """A factor of controls grows without bound over their domains."""
+
+    def __init__(self, state: str, coefficient: Expr) -> None:
+        self.state, self.coefficient = state, to_text(coefficient)
+        super().__init__(f"{self.coefficient} is unbounded")
+
+
+@final
 @dataclass(frozen=True, slots=True)
 class Plan:
     """The sheets of a field, and the parts of rates that no state enters: coefficients alone."""
@@ -83,12 +94,10 @@ def plan_formula(rates: Mapping[str, Expr], declared: Declarations) -> Plan:
             if part not in columns:
                 columns.append(part)
             low, high = bounds(summand.coefficient, box)
-            use = Use(
-                component,
-                code_of(summand.coefficient),
-                columns.index(part),
-                max(abs(low), abs(high)),
-            )
+            largest = max(abs(low), abs(high))
+            if not math.isfinite(largest):
+                raise UnboundedError(state.name, summand.coefficient)
+            use = Use(component, code_of(summand.coefficient), columns.index(part), largest)
             uses.setdefault(over, []).append(use)
     alone = _alone(parts.pop((), []), uses.pop((), []))
     sheets = [

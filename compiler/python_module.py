@@ -4,10 +4,12 @@ This is the only place where code that a spec's author wrote is run, and only `c
 """
 
 import importlib
+import importlib.util
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -35,7 +37,7 @@ def sampler(call: str, beside: Path, over: tuple[str, ...], driven: tuple[str, .
         arguments = {name: points[:, i].copy() for i, name in enumerate(over)}
         try:
             answer = function(**arguments)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise ModuleError(
                 f"{call} raised {type(error).__name__}: {error}",
                 f"it is called as {call.partition(':')[2]}({', '.join(over)}) with arrays",
@@ -49,14 +51,13 @@ def _found(call: str, beside: Path) -> Callable[..., object]:
     module_name, _, name = call.partition(":")
     if not module_name or not name:
         raise ModuleError(f"'{call}' is not package.module:function", "write `call: spiral:field`")
-    with _importable(beside):
-        try:
-            module = importlib.import_module(module_name)
-        except Exception as error:
-            raise ModuleError(
-                f"{module_name} can't be imported ({type(error).__name__}: {error})",
-                "it is looked for beside the spec and among the installed packages",
-            ) from error
+    try:
+        module = _loaded(module_name, beside)
+    except (Exception, SystemExit) as error:
+        raise ModuleError(
+            f"{module_name} can't be imported ({type(error).__name__}: {error})",
+            "it is looked for beside the spec and among the installed packages",
+        ) from error
     function: Callable[..., object] | None = getattr(module, name, None)
     if not callable(function):
         raise ModuleError(
@@ -65,8 +66,23 @@ def _found(call: str, beside: Path) -> Callable[..., object]:
     return function
 
 
+def _loaded(name: str, beside: Path) -> ModuleType:
+    """The module from its file beside the spec, read anew; else the installed one."""
+    path = beside / Path(*name.split(".")).with_suffix(".py")
+    if not path.is_file():
+        return importlib.import_module(name)
+    spec = importlib.util.spec_from_file_location(f"_of_a_spec_{name.replace('.', '_')}", path)
+    assert spec is not None, "a .py file has a loader"
+    assert spec.loader is not None, "a .py file has a loader"
+    module = importlib.util.module_from_spec(spec)
+    with _importable(beside):
+        spec.loader.exec_module(module)
+    return module
+
+
 @contextmanager
 def _importable(folder: Path) -> Iterator[None]:
+    """Within it the modules beside the spec can import one another."""
     before = list(sys.path)
     sys.path.insert(0, str(folder))
     importlib.invalidate_caches()

@@ -12,6 +12,8 @@ from spec_schema.field_forms import Arrows, Form, Grid, Module
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean
 
+MOST_AXES = 5
+
 
 def check_references(
     spec: BehaviorSpec, declared: Declarations, expressions: Expressions, findings: Findings
@@ -20,6 +22,7 @@ def check_references(
     _check_axes(spec.field.form, declared, findings)
     _check_keys(spec, declared, findings)
     _check_trace(spec, declared, findings)
+    _check_signals(spec, declared, expressions, findings)
     read = _read_by_field(spec.field.form, declared, expressions)
     _warn_of_imitation(read, declared, findings)
     _warn_of_unused(spec, expressions, read, findings)
@@ -64,6 +67,10 @@ def _check_axes(form: Form, declared: Declarations, findings: Findings) -> None:
                 f"the field can't stand over '{name}': no sensed state or control has this name"
             )
             findings.error("S207", (*base, "over", i), message, remedy)
+    over = axes_of(form, declared)
+    if len(over) > MOST_AXES:
+        message = f"a table has at most {MOST_AXES} axes (got {len(over)})"
+        findings.error("S245", (*base,), message, "name fewer variables in `over`", key=True)
     driven = [state.name for state in declared.driven]
     drives = drives_of(form, declared)
     for i, name in enumerate(drives):
@@ -122,20 +129,26 @@ def _check_trace(spec: BehaviorSpec, declared: Declarations, findings: Findings)
                 remedy = did_you_mean(meant, list(values)) or f"its values: {', '.join(values)}"
                 path = ("trace", name, "values", raw)
                 findings.error("S210", path, f"'{name}' has no value '{meant}'", remedy)
-    unread = set(signals(spec)) - _names_in_text(spec.judge_when)
+    for name in declared.units:
+        if name in spec.trace and spec.trace[name].values is not None:
+            message = f"'{name}' is a number and has no values by name"
+            findings.error("S210", ("trace", name, "values"), message, "remove `values`", key=True)
+
+
+def _check_signals(
+    spec: BehaviorSpec, declared: Declarations, expressions: Expressions, findings: Findings
+) -> None:
+    judged = expressions.judge_when
+    read = names_in(judged) if judged is not None else frozenset()
     for name in signals(spec):
-        if name in unread:
+        if spec.trace[name].constant is not None:
+            message = f"'{name}' is declared nowhere, so it can't be a constant of the trace"
+            findings.error("S209", ("trace", name), message, "declare it under `control`", key=True)
+        elif name not in read and (judged is not None or spec.judge_when is None):
             known = declared.register
             remedy = did_you_mean(name, list(known)) or "read it in `judge_when`, or remove it"
             message = f"'{name}' is declared nowhere and `judge_when` does not read it"
             findings.warning("S221", ("trace", name), message, remedy, key=True)
-
-
-def _names_in_text(text: str | None) -> set[str]:
-    if text is None:
-        return set()
-    words = "".join(c if c.isalnum() or c == "_" else " " for c in text).split()
-    return set(words)
 
 
 def _read_by_field(form: Form, declared: Declarations, expressions: Expressions) -> frozenset[str]:

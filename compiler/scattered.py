@@ -21,22 +21,35 @@ class SketchError(Exception):
         super().__init__(message)
 
 
-def thin_plate(at: Array, go: Array, low: Array, high: Array) -> Sampler:
-    """The least-bending field through the arrows `go` (k, m) at `at` (k, d) on a box (d,)."""
+def thin_plate(
+    at: Array, go: Array, low: Array, high: Array, periodic: tuple[bool, ...]
+) -> Sampler:
+    """The least-bending field through the arrows `go` (k, m) at `at` (k, d) on a box (d,).
+
+    A periodic axis is bent to a circle, so that the field meets itself where the axis ends.
+    """
     _require_spread(at)
-    span = high - low
+
+    def placed(points: Array) -> Array:
+        share = (points - low) / (high - low)
+        columns: list[Array] = []
+        for i, turns in enumerate(periodic):
+            angle = 2.0 * np.pi * share[:, i]
+            columns += [np.cos(angle), np.sin(angle)] if turns else [share[:, i]]
+        return np.stack(columns, axis=-1)
+
     try:
         surface = scipy.interpolate.RBFInterpolator(
-            (at - low) / span, go, kernel="thin_plate_spline", degree=1
+            placed(at), go, kernel="thin_plate_spline", degree=1
         )
-    except np.linalg.LinAlgError as error:
+    except (np.linalg.LinAlgError, ValueError) as error:
         raise SketchError(
             "the arrows stand on one line or plane, so they don't say what happens beside it",
             "add arrows that don't all lie on one line",
         ) from error
 
     def sample(points: Array) -> Array:
-        return np.asarray(surface((points - low) / span), dtype=np.float64)
+        return np.asarray(surface(placed(points)), dtype=np.float64)
 
     return sample
 

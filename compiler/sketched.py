@@ -7,7 +7,7 @@ import numpy as np
 
 from compiler.declare import Declarations
 from compiler.findings import Findings
-from compiler.lattice import between_nodes, is_even
+from compiler.lattice import between_nodes, closed, is_even
 from compiler.scattered import SketchError, piecewise_linear, reaches_beyond, thin_plate
 from compiler.tabulate import Range, Sampler
 from runtime.arrays import Array, frozen
@@ -45,12 +45,13 @@ def arrows_sampler(
             "move it inside, or widen the domain",
         )
         return None
-    at, go = _wrapped(at, go, ranges)
+    periodic = tuple(span.periodic for span in ranges)
     try:
-        sample = (
-            thin_plate(at, go, low, high) if form.fill == "thin_plate" else piecewise_linear(at, go)
-        )
-        beyond = reaches_beyond(at, low, high)
+        if form.fill == "thin_plate":
+            sample = thin_plate(at, go, low, high, periodic)
+        else:
+            sample = piecewise_linear(*_wrapped(at, go, ranges))
+        beyond = reaches_beyond(*_wrapped(at, go, ranges)[:1], low, high)
     except SketchError as error:
         findings.error("S234", ("field", "arrows", "sketch"), error.message, error.remedy)
         return None
@@ -74,7 +75,7 @@ def grid_sampler(
     findings: Findings,
 ) -> tuple[Sampler | None, Table | None]:
     """The field of a lookup array; its own table, too, where its nodes are those of a table."""
-    given = _grid_values(form, drives, beside, findings)
+    given = _grid_values(form, declared, drives, beside, findings)
     if given is None:
         return None, None
     values = given * _scales(drives, declared)
@@ -93,7 +94,9 @@ def grid_sampler(
         )
         table = tabulate(values, axes, method)
         return (lambda points: lookup(table, points)), table
-    return between_nodes(nodes, values, method), None
+    periodic = tuple(span.periodic for span in ranges)
+    highs = tuple(span.high for span in ranges)
+    return between_nodes(*closed(nodes, values, periodic, highs), method, periodic), None
 
 
 def _scales(names: tuple[str, ...], declared: Declarations) -> Array:
@@ -126,7 +129,11 @@ def _wrapped(at: Array, go: Array, ranges: list[Range]) -> tuple[Array, Array]:
 
 
 def _grid_values(
-    form: Grid, drives: tuple[str, ...], beside: FilePath, findings: Findings
+    form: Grid,
+    declared: Declarations,
+    drives: tuple[str, ...],
+    beside: FilePath,
+    findings: Findings,
 ) -> Array | None:
     """The array (n1, ..., nd, m) in the user's units."""
     base = ("field", "grid")
@@ -155,8 +162,11 @@ def _grid_values(
         return np.stack([frozen(g.numbers).reshape(g.shape) for g in given], axis=-1)
     path = beside / str(form.file)
     try:
-        data = _read_npy(path) if path.suffix == ".npy" else _read_csv(path, form, drives)
-    except (OSError, ValueError) as error:
+        if path.suffix == ".npy":
+            data = _read_npy(path)
+        else:
+            data = _read_csv(path, form, drives, _csv_nodes(path, form, declared))
+    except (OSError, ValueError, EOFError, IndexError) as error:
         why = str(error.strerror).lower() if isinstance(error, OSError) else error
         message = f"{form.file} can't be used: {why}"
         axes = ", ".join(form.over)
@@ -179,29 +189,69 @@ def _grid_values(
 
 
 def _read_npy(path: FilePath) -> Array:
-    data = np.load(path, allow_pickle=False)
+    # Mapped, so that a header that lies about the size is found out before memory is taken.
+    data = np.load(path, mmap_mode="r", allow_pickle=False)
+    if not isinstance(data, np.ndarray):
+        raise ValueError("it holds several arrays")  # noqa: TRY004  told like any wrong content
     if not np.issubdtype(data.dtype, np.number) or np.iscomplexobj(data):
         raise ValueError(f"it holds {data.dtype}, not numbers")
-    array = np.asarray(data, dtype=np.float64)
-    if not np.isfinite(array).all():
+    return _finite(np.array(data, dtype=np.float64))
+
+
+def _finite(data: Array) -> Array:
+    if data.size == 0:
+        raise ValueError("it is empty")
+    if not np.isfinite(data).all():
         raise ValueError("it holds NaN or infinity")
-    return array
+    return data
 
 
-def _read_csv(path: FilePath, form: Grid, drives: tuple[str, ...]) -> Array:
-    """A table with a column for each variable of `over`, then one for each driven state."""
+def _read_csv(
+    path: FilePath, form: Grid, drives: tuple[str, ...], nodes: tuple[Array, ...]
+) -> Array:
+    """A table with a column for each variable of `over`, then one for each driven state.
+
+    Its rows may stand in any order, one for each node; `nodes` are where the user's spec has them.
+    """
     with path.open(encoding="utf-8") as file:
         header = [name.strip() for name in file.readline().split(",")]
-        rows = np.loadtxt(file, delimiter=",", ndmin=2)
+        lines = [line for line in file if line.strip()]
     wanted = [*form.over, *drives]
     if header != wanted:
         raise ValueError(f"its header must be {','.join(wanted)} (got {','.join(header)})")
-    shape = tuple(len(np.unique(rows[:, i])) for i in range(len(form.over)))
-    if math.prod(shape) != len(rows):
+    if not lines:
+        raise ValueError("it has no rows")
+    rows = _finite(np.loadtxt(lines, delimiter=",", ndmin=2))
+    index = []
+    for column, (name, at) in enumerate(zip(form.over, nodes, strict=True)):
+        nearest = np.abs(rows[:, column, None] - at).argmin(axis=1)
+        off = np.abs(rows[:, column] - at[nearest]) > 1e-6 * (at[-1] - at[0])
+        if off.any():
+            raise ValueError(f"{name} = {rows[off.argmax(), column]:g} is none of the axis's nodes")
+        index.append(nearest)
+    shape = tuple(len(at) for at in nodes)
+    place = np.ravel_multi_index(tuple(index), shape)
+    if len(np.unique(place)) != len(rows) or len(rows) != math.prod(shape):
         raise ValueError(f"{len(rows)} rows don't fill a grid of {' x '.join(map(str, shape))}")
-    order = np.lexsort(rows[:, : len(form.over)].T[::-1])
-    values: Array = rows[order][:, len(form.over) :].reshape(*shape, len(drives))
+    values: Array = rows[place.argsort()][:, len(form.over) :].reshape(*shape, len(drives))
     return values
+
+
+def _csv_nodes(path: FilePath, form: Grid, declared: Declarations) -> tuple[Array, ...]:
+    """The nodes that a .csv means: as the spec says, else evenly, as many as it has values."""
+    with path.open(encoding="utf-8") as file:
+        file.readline()
+        lines = [line for line in file if line.strip()]
+    rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(form.over)))
+    found = []
+    for column, name in enumerate(form.over):
+        span = range_of(name, declared)
+        scale = declared.variable(name).unit.scale
+        count = len(np.unique(rows[:, column])) if column < rows.shape[1] else 0
+        share = max(count if span.periodic else count - 1, 1)
+        even = (span.low + (span.high - span.low) * np.arange(count) / share) / scale
+        found.append(frozen(form.nodes.get(name, even)))
+    return tuple(found)
 
 
 def _grid_nodes(
@@ -232,7 +282,19 @@ def _grid_nodes(
             continue
         at = frozen(given) * declared.variable(name).unit.scale
         slack = 1e-9 * (span.high - span.low)
-        if len(at) != count or at[0] > span.low + slack or at[-1] < span.high - slack:
+        if span.periodic:
+            if len(at) == count and abs(at[0] - span.low) <= slack and at[-1] < span.high - slack:
+                found.append(at)
+                continue
+            message = f"the nodes of '{name}' must begin at its lower end and stop before the upper"
+            remedy = "leave the upper end out: there the lower one comes again"
+            findings.error("S231", ("field", "grid", "nodes", name), message, remedy)
+            return None
+        at[[0, -1]] = [
+            edge if abs(node - edge) <= slack else node
+            for node, edge in zip(at[[0, -1]], (span.low, span.high), strict=True)
+        ]
+        if len(at) != count or at[0] > span.low or at[-1] < span.high:
             message = f"the nodes of '{name}' must reach from one end of its domain to the other"
             findings.error(
                 "S231",

@@ -26,6 +26,7 @@ WORST = 24  # places around which the largest error is sought again, more densel
 MARGIN = 1.1  # measured errors are enlarged by this, since a denser sample finds a little more
 ROUNDING = 2.0**-50  # of the largest value: no bound is smaller than what doubles can hold
 MOST_NODES = 8_193  # per axis
+ROUNDS = 24  # of widening, each by what the error asks for
 SEED = 20_260  # the same input gives the same bytes
 
 
@@ -81,7 +82,7 @@ def tabulate_function(wanted: Wanted) -> Tabulated:
     rng = np.random.default_rng(SEED)
     checked = replace(wanted, sample=_finite(wanted))
     axes = tuple(_refined(checked, i, rng) for i in range(len(wanted.ranges)))
-    for _ in range(12):
+    for _ in range(ROUNDS):
         table = _built(checked, axes)
         error, worst, points = _measured(checked, table, rng)
         if np.all(error <= wanted.tolerance):
@@ -269,7 +270,11 @@ def _widened(
     i = int(np.argmax(ratios))
     if ratios[i] < 0.0:
         raise _too_few(axes)
-    wider = replace(axes[i], count=math.ceil((axes[i].count - 1) * 1.3) + 1)
+    order = 4 if wanted.method is Method.CUBIC else 2
+    growth = min(3.0, max(1.3, (2.0 * ratios[i]) ** (1 / order)))
+    wider = replace(axes[i], count=math.ceil((axes[i].count - 1) * growth) + 1)
+    if wider.count > MOST_NODES:
+        raise _too_fine(wanted, (*axes[:i], wider, *axes[i + 1 :]))
     return (*axes[:i], wider, *axes[i + 1 :])
 
 

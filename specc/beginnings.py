@@ -37,7 +37,7 @@ def _library() -> dict[str, str]:
 
 
 def list_templates() -> str:
-    """The templates, each with the first line of its comment."""
+    """The templates, each with what it is about."""
     rows = []
     for name, text in templates().items():
         about = re.search(r"^about: (.*)$", text, re.MULTILINE)
@@ -64,4 +64,4 @@ def identifier(text: str) -> str:
     """A name that a spec may carry, as near to `text` as can be."""
     word = re.sub(r"\W+", "_", text, flags=re.ASCII).strip("_").lower() or "behavior"
     word = f"b_{word}" if word[0].isdigit() else word
-    return f"{word}_" if word in RESERVED else word[:64]
+    return f"{word}_" if word in RESERVED | {"true", "false", "null"} else word[:64]

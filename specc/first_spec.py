@@ -234,7 +234,10 @@ def _tolerance(state: Variable) -> str:
 
 
 def _text(text: str) -> str:
-    return text if re.fullmatch(r"[A-Za-z/][\w/.@\[\]-]*", text) else f'"{text}"'
+    """The text as a YAML scalar."""
+    if re.fullmatch(r"[A-Za-z/][\w/.@\[\]-]*", text):
+        return text
+    return "'" + text.replace("'", "''") + "'"
 
 
 def _other_fields(found: Inventory, guess: Guess) -> Iterator[str]:

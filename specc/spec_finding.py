@@ -1,5 +1,6 @@
 """Which spec a trace is judged by: the one named, else the one attached, else the project's."""
 
+import glob
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -111,7 +112,9 @@ def _refuse_other_text(trace: Path, program: Program, project: _Project) -> None
 def _spec_of(project: _Project, trace: Path) -> tuple[Path, str]:
     folder = project.path.parent
     for pattern, entry in project.spec.traces.items():
-        if any(trace.resolve() == path.resolve() for path in folder.glob(pattern)):
+        # Path.glob refuses patterns that are absolute, which a user may well write.
+        matching = glob.iglob(pattern, root_dir=folder, recursive=True)  # noqa: PTH207
+        if any(trace.resolve() == (folder / path).resolve() for path in matching):
             return folder / entry, f"since '{pattern}' names it in"
     if len(project.spec.specs) == 1:
         return folder / project.spec.specs[0], "the only spec of"

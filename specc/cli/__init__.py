@@ -1,4 +1,4 @@
-"""The command line: parsing and printing only; the work is done in `specc.api`."""
+"""The command line: parsing and printing only; the work is done in the modules of `specc`."""
 
 import os
 import sys

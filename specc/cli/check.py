@@ -41,6 +41,8 @@ def check(
     from specc.files import spec_files
 
     files = spec_files(paths)
+    if not files:
+        raise typer.BadParameter(f"no .yaml file is in {', '.join(map(str, paths))}")
     found = tuple(d for file in files for d in check_file(file))
     failed = any(d.severity == "error" for d in found)
     match form:

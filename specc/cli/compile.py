@@ -35,6 +35,9 @@ def compile_(
     """
     from compiler.dump import dump as dumped
     from specc import loading, printing
+    from specc.files import require_suffix
+
+    require_suffix(output, ".specc")
 
     warmed(spec)
     with progress_bar(f"compiling {spec.name}") as progress:

@@ -36,6 +36,9 @@ def portrait(
     `specc portrait specs/wall_follow.yaml --axes distance,heading --format json`
     """
     from specc import loading, portraying
+    from specc.files import require_suffix
+
+    require_suffix(output, ".svg", ".png", ".pdf", ".json")
 
     warmed(spec)
     program = loading.load_program(spec)

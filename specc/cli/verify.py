@@ -55,9 +55,12 @@ def verify(
     `specc verify drive.mcap --format json > verdict.json`
     """
     from specc import verifying
+    from specc.files import require_suffix
     from verifier.report.record import as_json
     from verifier.report.text import as_text
 
+    for path in output:
+        require_suffix(path, ".html", ".json", ".txt")
     warmed(spec)
     verification = verifying.verify(trace, spec, clock.value)
     report = verification.report
