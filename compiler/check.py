@@ -36,10 +36,10 @@ class Checked:
     findings: Findings
 
 
-def check(path: Path) -> tuple[Diagnostic, ...]:
+def check(path: Path | str) -> tuple[Diagnostic, ...]:
     """Every mistake in the spec at `path`, and every doubt."""
     try:
-        return check_examined(examine(path))
+        return check_examined(examine(Path(path)))
     except SpecError as error:
         return error.diagnostics
 

@@ -9,9 +9,9 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet
+from compiler.ranges import range_of
 from compiler.references import MOST_AXES
 from compiler.settings import Settings
-from compiler.sketched import range_of
 from compiler.tabulate import (
     MARGIN,
     ROUNDING,

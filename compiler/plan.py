@@ -12,12 +12,13 @@ from typing import final
 
 import numpy as np
 
+from compiler.arrows import arrows_sampler
 from compiler.declare import Declarations
 from compiler.findings import Findings
+from compiler.grid import grid_sampler
 from compiler.lower_parts import code_of
 from compiler.python_module import ModuleError, sampler
 from compiler.references import axes_of, drives_of
-from compiler.sketched import arrows_sampler, grid_sampler
 from compiler.tabulate import Sampler
 from compiler.terms import summands
 from runtime.arrays import Array

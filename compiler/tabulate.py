@@ -12,6 +12,7 @@ from typing import TypeAlias, final
 
 import numpy as np
 
+from compiler.ranges import Range
 from runtime.arrays import Array
 from runtime.interpolation import lookup, tabulate
 from runtime.program import Axis, Method, Table
@@ -28,18 +29,6 @@ ROUNDING = 2.0**-50  # of the largest value: no bound is smaller than what doubl
 MOST_NODES = 8_193  # per axis
 ROUNDS = 24  # of widening, each by what the error asks for
 SEED = 20_260  # the same input gives the same bytes
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class Range:
-    """An axis to be: the interval of a variable, and a node count where the user fixed one."""
-
-    name: str
-    low: float
-    high: float
-    periodic: bool
-    fixed: int | None = None
 
 
 @final
@@ -152,7 +141,7 @@ def _refined(wanted: Wanted, i: int, rng: np.random.Generator) -> Axis:
         growth = min(4.0, max(1.3, (1.2 * found.ratio / share) ** (1 / order)))
         count = math.ceil((count - 1) * growth) + 1
         if count > MOST_NODES or 8 * count * wanted.tolerance.size > wanted.budget:
-            raise _too_fine(wanted, (axis,))
+            raise _too_fine(wanted, (_axis(span, count),))
 
 
 def _lines(ranges: tuple[Range, ...], rng: np.random.Generator) -> Array:
@@ -302,6 +291,15 @@ def _too_few(axes: tuple[Axis, ...]) -> TableError:
 def _too_fine(wanted: Wanted, axes: tuple[Axis, ...]) -> TableError:
     axis = max(axes, key=lambda a: a.count)
     size = table_bytes(axes, wanted.method, wanted.tolerance.size)
+    if axis.count > MOST_NODES:
+        return TableError(
+            "S241",
+            axis.name,
+            f"the field bends too sharply along {axis.name}: more than {MOST_NODES} nodes would be "
+            "needed (a kink, as clip, abs, min and max have, is never met exactly)",
+            f"loosen `table: tolerance`, round the kink off (for example with tanh), or shrink the "
+            f"domain of {axis.name}",
+        )
     return TableError(
         "S241",
         axis.name,

@@ -56,6 +56,10 @@ HOMES = {
 __all__ = [*HOMES]  # noqa: PLE0604  the names are text
 
 
+def __dir__() -> list[str]:
+    return [*HOMES, "__version__"]
+
+
 def __getattr__(name: str) -> object:
     """Load a public name from its home, once."""
     if name not in HOMES:

@@ -9,8 +9,9 @@ from verifier.topology.features import Portrait
 from verifier.topology.portrait_json import as_json
 
 
-def draw(portrait: Portrait, path: Path) -> None:
+def draw(portrait: Portrait, path: Path | str) -> None:
     """Write a portrait as .svg, .png or .pdf, or its numbers as .json."""
+    path = Path(path)
     suffix = path.suffix.lower()
     match suffix:
         case ".json":

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from spec_schema.diagnostics import SpecError
@@ -9,14 +10,31 @@ from specc.faults import fault
 
 
 def write_atomically(path: Path, data: bytes) -> None:
-    """`path` holds all of `data` or what it held before; never a half of it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.part")
+    """`path` holds all of `data` or what it held before; never a half of it.
+
+    A link is followed: what it points to is replaced.
+
+    Raises:
+        SpecError: the path is a folder or a device, or can't be written.
+    """
+    target = Path(path).resolve()
+    if target.exists() and not target.is_file():
+        raise fault("V347", path, "this is no ordinary file, so nothing is written to it")
+    beside = target.with_name(f".{target.name}.part")
     try:
+        target.parent.mkdir(parents=True, exist_ok=True)
         beside.write_bytes(data)
-        beside.replace(path)
+        beside.replace(target)
+    except OSError as error:
+        why = str(error.strerror).lower()
+        raise fault("V347", path, f"the file can't be written: {why}") from error
     finally:
-        beside.unlink(missing_ok=True)
+        _remove(beside)
+
+
+def _remove(path: Path) -> None:
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
 
 
 def spec_files(paths: Sequence[Path]) -> tuple[Path, ...]:

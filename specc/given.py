@@ -40,8 +40,8 @@ def settings_for(parts: Sequence[Part], given: Mapping[str, Value], what: str) -
     return found
 
 
-def seconds(value: Value) -> float:
-    """A duration: a number of seconds, or a quantity of time.
+def seconds(value: Value, name: str = "duration") -> float:
+    """A duration, called `name` in messages: a number of seconds, or a quantity of time.
 
     Raises:
         SpecError: it is none, or not positive.
@@ -49,10 +49,11 @@ def seconds(value: Value) -> float:
     try:
         found = _si(value, parse_unit("s"))
     except ValueError as error:
-        problem = _problem("V342", "duration", value, str(error), "write 20, '20 s' or '2 min'")
+        problem = _problem("V342", name, value, str(error), "write 20, '20 s' or '2 min'")
         raise SpecError([problem]) from error
     if not 0.0 < found < float("inf"):
-        raise SpecError([_problem("V342", "duration", value, "it must be positive", "write 20 s")])
+        problem = _problem("V342", name, value, "it must be positive", "write 0.1 s, 20 s or 2 min")
+        raise SpecError([problem])
     return found
 
 

@@ -45,6 +45,9 @@ def load_program(path: Path | str) -> Program:
         return compile_spec(path).program
     try:
         return read_artifact(path)
+    except OSError as error:
+        why = str(error.strerror or error).lower()
+        raise fault("V335", path, f"this artifact can't be read: {why}") from error
     except ArtifactError as error:
         message = f"this artifact can't be used: {error}"
         raise fault("V335", path, message, "compile the spec again") from error

@@ -10,8 +10,9 @@ from runtime.rollout import Rollout
 from specc.files import unknown_suffix, write_atomically
 
 
-def record(program: Program, rollout: Rollout, path: Path) -> None:
+def record(program: Program, rollout: Rollout, path: Path | str) -> None:
     """Write a run as .mcap (with the compiled spec attached) or as .csv."""
+    path = Path(path)
     match path.suffix.lower():
         case ".mcap":
             write_atomically(path, recorded(rollout, program))

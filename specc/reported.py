@@ -9,9 +9,10 @@ from verifier.report.record import as_json
 from verifier.report.text import as_text
 
 
-def write_report(verification: Verification, path: Path) -> None:
+def write_report(verification: Verification, path: Path | str) -> None:
     """Write a verdict as .html, .json or .txt."""
     report = verification.report
+    path = Path(path)
     match path.suffix.lower():
         case ".html":
             write_atomically(path, report_page(report).encode())

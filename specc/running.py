@@ -25,7 +25,7 @@ def simulate(
     """
     begin = settings_for(program.states, start or {}, "state")
     held = settings_for(program.controls, controls or {}, "control")
-    step = None if every is None else seconds(every)
+    step = None if every is None else seconds(every, "every")
     try:
         return run(program, begin, seconds(duration), held, step)
     except ValueError as error:

@@ -1,5 +1,6 @@
 """The command line: parsing and printing only; the work is done in the modules of `specc`."""
 
+import io
 import os
 import sys
 import traceback
@@ -12,6 +13,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run `specc` and return its exit status (see `specc.cli.status`)."""
     # Looking for pydantic's plugins costs a tenth of a second, and we have none.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # A terminal that can't show a letter gets a question mark, never a traceback.
+            stream.reconfigure(errors="replace")
     from specc.cli.app import run
 
     return run(arguments)

@@ -44,7 +44,8 @@ def compile_(
         compiled = loading.compile_spec(spec, progress)
     show_diagnostics(compiled.warnings)
     if dump:
-        print_text(dumped(compiled.program))
+        text = dumped(compiled.program)
+        print_json({"dump": text}) if form is Format.JSON else print_text(text)
         return
     path = output or Path(f"{compiled.program.name}.specc")
     data = loading.write_artifact(compiled.program, path)

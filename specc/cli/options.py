@@ -27,8 +27,8 @@ Settings: TypeAlias = Annotated[
         "--set",
         "-s",
         metavar="NAME=VALUE",
-        help="Set a control parameter or hold a state: in its own unit (`speed=0.4`) or with one "
-        "(`speed='40 cm/s'`). Repeatable.",
+        help="Set a control parameter (for a portrait also hold a state): in its own unit "
+        "(`speed=0.4`) or with one (`speed='40 cm/s'`). Repeatable.",
     ),
 ]
 

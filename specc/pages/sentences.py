@@ -99,7 +99,7 @@ def about_variable(report: Report, variable: VariableResult) -> tuple[str, ...]:
     noise = variable.noise
     size = quantity(noise.sigma, variable.unit)
     sentences = [
-        f"Its tolerance is declared at {variable.origin}.",
+        f"It is declared at {variable.origin}.",
         f"Measurement noise: {size} ({noise.method}, {noise.samples} samples).",
     ]
     if noise.quantum > 0.0:

@@ -107,6 +107,40 @@ def test_a_recording_verifies_against_the_spec_that_it_carries(
     assert {"coverage", "losses", "spec", "trace"} <= verdict.keys()
 
 
+def test_a_csv_whose_columns_bear_the_names_needs_no_trace_block() -> None:
+    assert main(["simulate", VDP, "--start", "x=1", "-d", "40", "-o", "run.csv"]) == 0
+
+    assert main(["verify", "run.csv", "--spec", VDP]) == 0
+
+
+@pytest.mark.parametrize("target", ["/dev/null", "."])
+def test_only_ordinary_files_are_written(target: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("trace.csv").write_text("t,x\n0,0\n")
+
+    assert main(["init", "n", "-o", target]) == 2
+    assert Path("/dev/null").is_char_device()
+    assert "exists already" in capsys.readouterr().err
+
+
+def test_a_spec_is_never_overwritten_by_its_artifact(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("v.yaml").write_text(Path(VDP).read_text())
+
+    assert main(["compile", "v.yaml", "-o", "v.yaml"]) == 2
+    assert "V345" in capsys.readouterr().err
+    assert Path("v.yaml").read_text() == Path(VDP).read_text()
+
+
+def test_a_link_is_followed_and_a_device_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "link.specc").symlink_to(tmp_path / "real.specc")
+    (tmp_path / "device.specc").symlink_to("/dev/null")
+
+    assert main(["compile", VDP, "-o", "link.specc"]) == 0
+    assert main(["compile", VDP, "-o", "device.specc"]) == 2
+    assert (tmp_path / "real.specc").is_file()
+    assert (tmp_path / "link.specc").is_symlink()
+    assert Path("/dev/null").is_char_device()
+
+
 def test_simulate_says_where_a_run_left_the_domain(capsys: pytest.CaptureFixture[str]) -> None:
     run = ["simulate", VDP, "--start", "x=4", "--start", "v=8", "--format", "json"]
 

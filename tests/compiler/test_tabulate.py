@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from compiler.tabulate import Range, TableError, Wanted, tabulate_function
+from compiler.ranges import Range
+from compiler.tabulate import TableError, Wanted, tabulate_function
 from runtime.arrays import Array
 from runtime.interpolation import lookup
 from runtime.program import Method

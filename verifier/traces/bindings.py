@@ -1,7 +1,7 @@
 """Which topic or column each variable of a program is read from."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 from runtime.program import Binding, Control, Program, State
@@ -9,7 +9,7 @@ from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from verifier.traces.faults import binding_diagnostic, nearest_help, origin_span
 from verifier.traces.log import LogFile, MessageLog, Sheet
-from verifier.traces.paths import MessagePath, PathError, parse_column, parse_path
+from verifier.traces.paths import MessagePath, PathError, column_text, parse_column, parse_path
 
 
 @final
@@ -53,6 +53,9 @@ def resolve(program: Program, log: LogFile) -> tuple[Bound, ...]:
         if isinstance(log, MessageLog) and _topic(binding.path) in log.topics:
             path = parse_path(binding.path)
             found.append(Bound(binding, path.topic, path.text, path))
+        elif isinstance(log, Sheet) and binding.name in log.columns:
+            own = replace(binding, path=column_text(binding.name))
+            found.append(Bound(own, log.name, binding.name, None))
     problems += _unbound(program, log, {bound.binding.name for bound in found})
     if problems:
         raise SpecError(problems)

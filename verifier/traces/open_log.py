@@ -68,7 +68,8 @@ def _read_file(path: Path, wanted: Wanted) -> LogFile:
 
 def _read_folder(path: Path, wanted: Wanted) -> LogFile:
     """A folder of MCAP files that belong together, or a ROS 2 bag."""
-    parts = sorted(path.glob("*.mcap"))
+    # An empty part, as a recorder leaves when it is killed, holds nothing to read.
+    parts = sorted(part for part in path.glob("*.mcap") if part.stat().st_size > 0)
     if parts:
         return _joined(path, [read_mcap(part, wanted) for part in parts])
     if (path / "metadata.yaml").is_file():
