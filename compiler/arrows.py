@@ -15,23 +15,10 @@ def arrows_sampler(
     form: Arrows, declared: Declarations, drives: tuple[str, ...], findings: Findings
 ) -> Sampler | None:
     """The field through the arrows, with a warning where the sketch does not reach."""
-    if not _sizes_fit(form, drives, findings):
-        return None
     at = frozen([arrow.at for arrow in form.sketch]) * scales(form.over, declared)
     go = frozen([arrow.go for arrow in form.sketch]) * scales(drives, declared)
     ranges = [range_of(name, declared) for name in form.over]
     low, high = frozen([r.low for r in ranges]), frozen([r.high for r in ranges])
-    outside = np.any((at < low) | (at > high), axis=1)
-    if outside.any():
-        index = int(np.argmax(outside))
-        message = "this arrow starts outside the domain"
-        findings.error(
-            "S234",
-            ("field", "arrows", "sketch", index, "at"),
-            message,
-            "move it inside, or widen the domain",
-        )
-        return None
     periodic = tuple(span.periodic for span in ranges)
     try:
         if form.fill == "thin_plate":
@@ -51,18 +38,6 @@ def arrows_sampler(
             "sketch arrows at the corners of the domain, or shrink the domain",
         )
     return sample
-
-
-def _sizes_fit(form: Arrows, drives: tuple[str, ...], findings: Findings) -> bool:
-    fits = True
-    for i, arrow in enumerate(form.sketch):
-        if len(arrow.go) != len(drives) or len(arrow.at) != len(form.over):
-            fits = False
-            if form.drives is None and len(arrow.go) != len(drives):
-                message = f"'go' has {len(arrow.go)} numbers for {len(drives)} driven states"
-                remedy = f"write one for each of {', '.join(drives)}"
-                findings.error("S234", ("field", "arrows", "sketch", i, "go"), message, remedy)
-    return fits
 
 
 def _wrapped(at: Array, go: Array, ranges: list[Range]) -> tuple[Array, Array]:

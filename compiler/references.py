@@ -73,6 +73,8 @@ def _check_axes(form: Form, declared: Declarations, findings: Findings) -> None:
         findings.error("S245", (*base,), message, "name fewer variables in `over`", key=True)
     driven = [state.name for state in declared.driven]
     drives = drives_of(form, declared)
+    if isinstance(form, Arrows):
+        _check_arrows(form, drives, declared, findings)
     for i, name in enumerate(drives):
         if name not in driven:
             remedy = did_you_mean(name, driven) or f"the driven states: {', '.join(driven)}"
@@ -81,6 +83,32 @@ def _check_axes(form: Form, declared: Declarations, findings: Findings) -> None:
     if missing:
         message = f"the field gives no rate for '{missing[0]}'"
         findings.error("S204", (*base,), message, "add it to `drives`", key=True)
+
+
+def _check_arrows(
+    form: Arrows, drives: tuple[str, ...], declared: Declarations, findings: Findings
+) -> None:
+    """Arrows of the wrong length, outside the domain, or twice at a point."""
+    known = {variable.name: variable for variable in declared.variables}
+    seen: set[tuple[float, ...]] = set()
+    for i, arrow in enumerate(form.sketch):
+        path: Path = ("field", "arrows", "sketch", i)
+        if form.drives is None and len(arrow.go) != len(drives):
+            message = f"'go' has {len(arrow.go)} numbers for {len(drives)} driven states"
+            remedy = f"write one for each of {', '.join(drives)}"
+            findings.error("S234", (*path, "go"), message, remedy)
+        for name, value in zip(form.over, arrow.at, strict=False):  # lengths are told by the model
+            axis = known.get(name)
+            if axis and not axis.low <= value * axis.unit.scale <= axis.high:
+                message = f"this arrow starts outside the domain of '{name}'"
+                findings.error(
+                    "S234", (*path, "at"), message, "move it inside, or widen the domain"
+                )
+        if arrow.at in seen:
+            findings.error(
+                "S234", (*path, "at"), "an arrow stands here already", "keep one of them"
+            )
+        seen.add(arrow.at)
 
 
 def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> None:
