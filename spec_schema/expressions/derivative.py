@@ -21,7 +21,7 @@ def derivative(expr: Expr, name: str) -> Expr:
     """The derivative with respect to `name`, lightly simplified; texts must be resolved.
 
     >>> from spec_schema.expressions.parse import parse
-    >>> from spec_schema.expressions.printers import to_text
+    >>> from spec_schema.expressions.printers.text import to_text
     >>> to_text(derivative(parse("x**2*sin(x)"), "x"))
     '2*(x*sin(x)) + x**2*cos(x)'
     """

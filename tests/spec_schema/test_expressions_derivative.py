@@ -8,7 +8,7 @@ import sympy
 from spec_schema.expressions.derivative import derivative
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.parse import parse
-from spec_schema.expressions.printers import to_text
+from spec_schema.expressions.printers.text import to_text
 from spec_schema.expressions.tree import ARITY, Apply, Name
 
 

@@ -16,7 +16,8 @@ from spec_schema.expressions.bounds import bounds
 from spec_schema.expressions.derivative import derivative
 from spec_schema.expressions.evaluate import evaluate, operate
 from spec_schema.expressions.parse import parse
-from spec_schema.expressions.printers import to_postfix, to_text
+from spec_schema.expressions.printers.postfix import to_postfix
+from spec_schema.expressions.printers.text import to_text
 from spec_schema.expressions.rewrite import names_in, simplify, substitute
 from spec_schema.expressions.tree import ARITY, Apply, Expr, Name, Number, fold, walk
 from spec_schema.faults import ExpressionError, Fault

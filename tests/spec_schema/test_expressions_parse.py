@@ -7,7 +7,7 @@ import tracemalloc
 import pytest
 
 from spec_schema.expressions.parse import parse
-from spec_schema.expressions.printers import to_postfix
+from spec_schema.expressions.printers.postfix import to_postfix
 from spec_schema.expressions.rewrite import names_in, resolve_texts, substitute, unknown_names
 from spec_schema.expressions.tree import FUNCTIONS, Apply, Name, Number, Text, walk
 from spec_schema.faults import ExpressionError, Fault

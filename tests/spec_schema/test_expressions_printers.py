@@ -11,15 +11,12 @@ import pytest
 
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.parse import parse
-from spec_schema.expressions.printers import (
-    C99_FUNCTIONS,
-    to_c99,
-    to_latex,
-    to_postfix,
-    to_python,
-    to_text,
-)
+from spec_schema.expressions.printers.c99 import C99_FUNCTIONS, to_c99
+from spec_schema.expressions.printers.latex import to_latex
 from spec_schema.expressions.printers.numerals import numeral
+from spec_schema.expressions.printers.postfix import to_postfix
+from spec_schema.expressions.printers.python import to_python
+from spec_schema.expressions.printers.text import to_text
 
 CORPUS = [
     "x + y - 2*x/y",
