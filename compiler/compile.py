@@ -11,14 +11,13 @@ horizon         table errors, carried to the fidelity horizon     7
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeAlias, final
+from typing import final
 
 from compiler.check import Checked, check_behavior, check_examined
 from compiler.horizon import excess
-from compiler.lower_field import formula_codes, lower_field, measured
+from compiler.lower_field import Progress, formula_codes, lower_field, measured
 from compiler.lower_parts import (
     lower_feasibility,
     lower_judge_when,
@@ -37,8 +36,6 @@ from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Formula, Step
 from spec_schema.load import Loaded, examine
-
-Progress: TypeAlias = Callable[[str, int, int], None]
 
 MENDED_BY_CODE = {"S241", "S242", "S245"}  # a formula that is kept as code needs no table
 TIGHTENINGS = 3  # how often the tables are made again, finer, for the fidelity horizon

@@ -19,7 +19,7 @@ def read_grid(path: Path, form: Grid, declared: Declarations, drives: tuple[str,
     """
     if path.suffix == ".npy":
         return _read_npy(path)
-    return _read_csv(path, form, drives, _csv_nodes(path, form, declared))
+    return _read_csv(path, form, declared, drives)
 
 
 def _read_npy(path: Path) -> Array:
@@ -43,20 +43,13 @@ def _finite(data: Array) -> Array:
     return data
 
 
-def _read_csv(path: Path, form: Grid, drives: tuple[str, ...], nodes: tuple[Array, ...]) -> Array:
+def _read_csv(path: Path, form: Grid, declared: Declarations, drives: tuple[str, ...]) -> Array:
     """A table with a column for each variable of `over`, then one for each driven state.
 
-    Its rows may stand in any order, one for each node; `nodes` are where the user's spec has them.
+    Its rows may stand in any order, one for each node.
     """
-    with path.open(encoding="utf-8") as file:
-        header = [name.strip() for name in file.readline().split(",")]
-        lines = [line for line in file if line.strip()]
-    wanted = [*form.over, *drives]
-    if header != wanted:
-        raise ValueError(f"its header must be {','.join(wanted)} (got {','.join(header)})")
-    if not lines:
-        raise ValueError("it has no rows")
-    rows = _finite(np.loadtxt(lines, delimiter=",", ndmin=2))
+    rows = _csv_rows(path, [*form.over, *drives])
+    nodes = _csv_nodes(rows, form, declared)
     index = []
     for column, (name, at) in enumerate(zip(form.over, nodes, strict=True)):
         nearest = np.abs(rows[:, column, None] - at).argmin(axis=1)
@@ -72,17 +65,25 @@ def _read_csv(path: Path, form: Grid, drives: tuple[str, ...], nodes: tuple[Arra
     return values
 
 
-def _csv_nodes(path: Path, form: Grid, declared: Declarations) -> tuple[Array, ...]:
-    """The nodes that a .csv means: as the spec says, else evenly, as many as it has values."""
+def _csv_rows(path: Path, wanted: list[str]) -> Array:
+    """The numbers (rows, columns) below a header that must name the columns as wanted."""
     with path.open(encoding="utf-8") as file:
-        file.readline()
+        header = [name.strip() for name in file.readline().split(",")]
         lines = [line for line in file if line.strip()]
-    rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(form.over)))
+    if header != wanted:
+        raise ValueError(f"its header must be {','.join(wanted)} (got {','.join(header)})")
+    if not lines:
+        raise ValueError("it has no rows")
+    return _finite(np.loadtxt(lines, delimiter=",", ndmin=2))
+
+
+def _csv_nodes(rows: Array, form: Grid, declared: Declarations) -> tuple[Array, ...]:
+    """The nodes that a .csv means: as the spec says, else evenly, as many as it has values."""
     found = []
     for column, name in enumerate(form.over):
         span = range_of(name, declared)
         scale = declared.variable(name).unit.scale
-        count = len(np.unique(rows[:, column])) if column < rows.shape[1] else 0
+        count = len(np.unique(rows[:, column]))
         share = max(count if span.periodic else count - 1, 1)
         even = (span.low + (span.high - span.low) * np.arange(count) / share) / scale
         found.append(frozen(form.nodes.get(name, even)))

@@ -8,10 +8,11 @@ from typing import Final
 
 import numpy as np
 
+from compiler.sampling import random_points
 from runtime.arrays import Array, frozen
 from runtime.flow import Source, flow_of
 from runtime.integrators import adaptive, fixed_steps
-from runtime.program import Fidelity, Kind, Program
+from runtime.program import Program
 
 STARTS: Final = 128
 SEED: Final = 7
@@ -27,7 +28,7 @@ def excess(program: Program) -> dict[str, float]:
     field, fidelity = program.field, program.fidelity
     if fidelity is None or field.formula is None or not field.terms:
         return {}
-    x, u = _starts(program, fidelity)
+    x, u = random_points(program, fidelity.region, STARTS, SEED)
     ends = [_ends(program, source, x, u, fidelity.horizon) for source in Source]
     apart = np.abs(ends[0] - ends[1])
     found = {}
@@ -48,17 +49,3 @@ def _ends(program: Program, source: Source, x: Array, u: Array, horizon: float) 
         return fixed_steps(flow, x, times, u[:, None, :], columns).states[:, 1:].reshape(-1, n)
     times = frozen([0.0, horizon / 2, horizon])
     return adaptive(flow, x, u, times, ACCURACY, ACCURACY).states[:, 1:].reshape(-1, n)
-
-
-def _starts(program: Program, fidelity: Fidelity) -> tuple[Array, Array]:
-    rng = np.random.default_rng(SEED)
-    limits = {state.name: (state.low, state.high) for state in program.states}
-    limits.update({control.name: (control.low, control.high) for control in program.controls})
-    limits.update(fidelity.region)
-    x = np.stack([rng.uniform(*limits[s.name], STARTS) for s in program.states], axis=-1)
-    for i, state in enumerate(program.states):
-        if state.kind is Kind.DISCRETE:
-            x[:, i] = np.floor(rng.uniform(0.0, len(state.values), STARTS))
-    controls = [rng.uniform(*limits[c.name], STARTS) for c in program.controls]
-    u = np.stack(controls, axis=-1) if controls else np.zeros((STARTS, 0))
-    return x, u

@@ -11,6 +11,7 @@ from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet
 from compiler.ranges import range_of
 from compiler.references import MOST_AXES
+from compiler.sampling import random_points
 from compiler.settings import Settings
 from compiler.tabulate import (
     MARGIN,
@@ -23,7 +24,7 @@ from compiler.tabulate import (
 )
 from runtime.arrays import Array
 from runtime.flow import Source, flow_of, next_states, rates
-from runtime.program import Control, ErrorBound, Field, Kind, Method, Program, State, Table, Term
+from runtime.program import ErrorBound, Field, Method, Program, Table, Term
 from spec_schema.expressions.tree import Expr
 
 Progress: TypeAlias = Callable[[str, int, int], None]
@@ -85,8 +86,7 @@ def measured(program: Program) -> Program:
     """
     if program.field.formula is None or not program.field.terms:
         return program
-    points = _points(program, np.random.default_rng(SEED + 1))
-    x, u = _split(program, points)
+    x, u = random_points(program, {}, SPOTS, SEED + 1)
     run = next_states if program.field.is_map else rates
     by_tables, by_formula = (
         run(flow_of(program, source), x, u)[:, list(program.driven)]
@@ -95,31 +95,16 @@ def measured(program: Program) -> Program:
     difference, size = np.abs(by_tables - by_formula), np.abs(by_formula)
     largest = MARGIN * np.nanmax(difference, axis=0) + ROUNDING * np.nanmax(size, axis=0)
     bounds = tuple(
-        replace(b, measured=float(max(e, b.measured)), points=b.points + len(points))
+        replace(b, measured=float(max(e, b.measured)), points=b.points + len(x))
         for b, e in zip(program.field.bounds, largest, strict=True)
     )
     return replace(program, field=replace(program.field, bounds=bounds))
 
 
-def _split(program: Program, points: Array) -> tuple[Array, Array]:
-    """States and controls of points over both."""
-    return points[:, : len(program.states)], points[:, len(program.states) :]
-
-
-def _points(program: Program, rng: np.random.Generator) -> Array:
-    parts: tuple[State | Control, ...] = (*program.states, *program.controls)
-    low, high = [p.low for p in parts], [p.high for p in parts]
-    points = rng.uniform(low, high, (SPOTS, len(parts)))
-    for i, part in enumerate(program.states):
-        if part.kind is Kind.DISCRETE:
-            points[:, i] = np.floor(rng.uniform(0.0, len(part.values), SPOTS))
-    return points
-
-
 def _largest_rates(program: Program, plan: Plan, declared: Declarations) -> Array:
     """How large the rates (m,) of the driven states become, on random points."""
     if program.field.formula is not None:
-        x, u = _split(program, _points(program, np.random.default_rng(SEED)))
+        x, u = random_points(program, {}, SPOTS, SEED)
         run = next_states if program.field.is_map else rates
         found = run(flow_of(program, Source.FORMULA), x, u)[:, list(program.driven)]
         sizes = np.abs(found)

@@ -1,17 +1,14 @@
 """Specs into programs: compiled from YAML, or read from an artifact."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TypeAlias
 
 from compiler.compile import Compiled, compile_file
+from compiler.lower_field import Progress
 from runtime.artifact import ArtifactError, to_bytes
 from runtime.artifact import read as read_artifact
 from runtime.program import Program
 from specc.faults import fault
 from specc.files import write_atomically
-
-Progress: TypeAlias = Callable[[str, int, int], None]
 
 
 def _in_silence(_what: str, _done: int, _of: int) -> None:

@@ -5,7 +5,6 @@ import math
 from pathlib import Path
 
 from compiler.quantities import rate_text
-from compiler.tabulate import table_bytes
 from runtime.arrays import Array
 from runtime.program import Program, Table, Unit
 from runtime.rollout import Ending, Rollout
@@ -59,8 +58,7 @@ def compile_summary(program: Program) -> str:
 
 def _table(table: Table) -> str:
     axes = " x ".join(f"{axis.name}[{axis.count}]" for axis in table.axes)
-    size = table_bytes(table.axes, table.method, table.coefficients.shape[-1])
-    return f"{axes}, {table.method}, {size:,} bytes"
+    return f"{axes}, {table.method}, {table.coefficients.nbytes:,} bytes"
 
 
 def rollout_record(program: Program, rollout: Rollout) -> dict[str, object]:
