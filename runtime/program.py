@@ -56,7 +56,8 @@ class Unit:
 class State:
     """A state variable. A periodic one has the period `high - low`.
 
-    A discrete one has `values` (names); its numbers are their indices 0, 1, ...
+    A discrete one has `values` (names); its numbers are their indices 0, 1, ... The one that
+    `Field.mode` names changes where a guard says so, else a discrete state is sensed only.
     `closure` is the rate (for a step map: the next value) that the author assumes for a
     sensed-only variable when the behavior runs alone; without one it is held at `hold`.
     """
@@ -156,6 +157,40 @@ class Table:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Coordinate:
+    """A coordinate that tables may stand over: an expression of one state and the controls.
+
+    A sketch that moves with its controls keeps one small table in coordinates that move with
+    them. A table that stands over it has an axis of its name; `low` to `high` is where its values
+    lie for all states and controls within their domains.
+    """
+
+    name: str
+    code: Code
+    low: float
+    high: float
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """A way out of a mode, taken as soon as `condition` is zero or more.
+
+    mode, target: indices of values of the discrete state `Field.mode`. condition: over the
+    register; it is positive where the guard is open. resets: the value (SI) that each named state
+    jumps to, worked out before any of them has jumped; the others stay.
+    """
+
+    mode: int
+    target: int
+    condition: Code
+    resets: tuple[tuple[str, Code], ...]
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Term:
     """`coefficient(register) * tables[table][column]`, added to the rate of `driven[component]`.
 
@@ -188,10 +223,14 @@ class ErrorBound:
 class Field:
     """The vector field: rates (SI per second) of the driven states, in the order of the states.
 
-    form: formula, arrows, grid, module or step. For `step` the field gives the *next value* of
-    each driven state, `every` seconds later; otherwise `every` is 0.
+    driven: the states that it moves; the discrete one that `mode` names is not among them.
+    form: formula, arrows, grid, module, step, sketch or modes. For `step` the field gives the
+    *next value* of each driven state, `every` seconds later; otherwise `every` is 0.
     tables, terms: the interpolated field; empty where it stays as code.
     formula: the field's own expressions, one per driven state, where the form has them.
+    coordinates: what tables stand over beside states and controls.
+    mode, guards: the discrete state whose value chooses the field, and how it changes; without
+    modes the name is empty.
     """
 
     driven: tuple[str, ...]
@@ -202,6 +241,9 @@ class Field:
     bounds: tuple[ErrorBound, ...]
     formula: tuple[Code, ...] | None
     origin: str
+    coordinates: tuple[Coordinate, ...] = ()
+    mode: str = ""
+    guards: tuple[Guard, ...] = ()
 
     @property
     def is_map(self) -> bool:
@@ -244,6 +286,73 @@ class Fidelity:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Place:
+    """Where a feature is claimed to be, for one state: within `within` (SI) of `at`."""
+
+    state: str
+    at: Code
+    within: float
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far a cycle is claimed to swing in one state: from `low` to `high`, to `within` (SI)."""
+
+    state: str
+    low: Code
+    high: Code
+    within: float
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Span:
+    """The values of a control over which a claim is made; SI."""
+
+    control: str
+    low: float
+    high: float
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A claim about the topology of the field: how many features of a type there are, and where.
+
+    text: the sentence as its author wrote it.
+    feature: a type or group of `verifier.topology.claims`: `saddle`, `attractor`, `stable cycle`...
+    least, most: how many; `most` is None for no limit.
+    other: only what no claim above it has named is counted.
+    places, reaches, period: what each feature counted must satisfy; codes over controls and
+    constants. period_within: the share of the period that it may be off.
+    share: not None for a claim on basins: at least so much of the domain goes to the features
+    that the claim named `goes_to` counts (empty: those of the last claim above that counts).
+    called: a name for what it counts, which later claims refer to.
+    over: controls that take all values of an interval; settings: controls at values (SI); what
+    neither names has its default. sketched: it follows from a sketch, nobody wrote it.
+    """
+
+    text: str
+    feature: str
+    least: int
+    most: int | None
+    other: bool
+    places: tuple[Place, ...]
+    reaches: tuple[Reach, ...]
+    period: Code | None
+    period_within: float
+    share: float | None
+    goes_to: str
+    called: str
+    over: tuple[Span, ...]
+    settings: tuple[tuple[str, float], ...]
+    sketched: bool
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Realization:
     """The channel of a body that a driven variable acts on, and as what."""
 
@@ -281,6 +390,7 @@ class Program:
     and for each further signal that `judge_when` reads (the names that are neither state,
     control, constant nor output).
     judge_when: over register entries and signals; non-zero where the behavior had its way.
+    claims: what its author, or a sketch, says of the topology of the field, in their order.
     """
 
     name: str
@@ -296,6 +406,7 @@ class Program:
     realizes: tuple[Realization, ...]
     feasibility: Feasibility | None
     source: Origin
+    claims: tuple[Claim, ...] = ()
 
     @property
     def register(self) -> tuple[str, ...]:

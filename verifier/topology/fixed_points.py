@@ -10,7 +10,7 @@ import numpy as np
 
 from runtime.arrays import Array, frozen
 from verifier.topology.classification import classified, eigenvalue_doubt, spectrum
-from verifier.topology.features import FixedPoint, Grid, PointKind
+from verifier.topology.features import FixedPoint, Grid, PointKind, Standing
 from verifier.topology.slices import Slice, drifts_at, jacobians_at, shortest
 from verifier.topology.zeros import find_zeros
 
@@ -43,7 +43,20 @@ def find_fixed_points(view: Slice, grid: Grid) -> tuple[tuple[FixedPoint, ...], 
             if singular[i]
             else _kind(view, J[i], eigenvalues, of_formula, rate)
         )
-        points.append(FixedPoint(frozen(at), kind, eigenvalues, vectors, of_formula, drifts[i]))
+        points.append(
+            FixedPoint(
+                frozen(at),
+                kind,
+                eigenvalues,
+                vectors,
+                of_formula,
+                drifts[i],
+                proved=False,
+                kind_proved=False,
+                radius=frozen(np.zeros(len(at))),
+                standing=Standing.UNCOMPARED,
+            )
+        )
     return _thinned(view, tuple(points))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from runtime.arrays import frozen
 from runtime.program import Program
-from verifier.topology.features import FixedPoint, Grid, Portrait, Trajectory
+from verifier.topology.features import Completeness, FixedPoint, Grid, Portrait, Trajectory
 from verifier.topology.fixed_points import find_fixed_points
 from verifier.topology.nullclines import find_nullclines
 from verifier.topology.orbits import find_orbits
@@ -59,6 +59,13 @@ def portrait(
         field=_thinned(grid, FIELD_STRIDE if planar else 2 * FIELD_STRIDE),
         nullclines=find_nullclines(view, grid) if planar else (),
         fixed_points=points,
+        completeness=Completeness(
+            complete=False, undecided=(), lost=frozen(np.empty((0, len(view.axes)))), about=""
+        ),
+        cycles=(),
+        separatrices=(),
+        basins=None,
+        switching=(),
         trajectories=_trajectories(view, grid, detail, points),
         notes=(*remarks, *_notes(program, view, grid)),
     )
