@@ -19,10 +19,11 @@ from verifier.topology.trajectories import find_trajectories
 @final
 @dataclass(frozen=True, slots=True)
 class Detail:
-    """How finely to look: points per axis in the plane and on a line, and how many trajectories."""
+    """How finely to look: points per axis by the number of axes, and how many trajectories."""
 
     plane: int = 257
     line: int = 2049
+    solid: int = 33
     trajectories: int = 4
 
 
@@ -38,7 +39,7 @@ def portrait(
     held: Mapping[str, float] | None = None,
     detail: Detail = EVERYTHING,
 ) -> Portrait:
-    """The portrait over one or two states, everything else held at `held` (SI).
+    """The portrait over one to three states, everything else held at `held` (SI).
 
     Without `axes` the first two variables that move by themselves are taken, or the only one.
     What `held` does not name stays at a control's default, a state's `hold`.
@@ -56,7 +57,7 @@ def portrait(
         axes=view.axes,
         held=view.held,
         every=program.field.every,
-        field=_thinned(grid, FIELD_STRIDE if planar else 2 * FIELD_STRIDE),
+        field=_thinned(grid, 2 * FIELD_STRIDE if len(view.axes) == 1 else FIELD_STRIDE),
         nullclines=find_nullclines(view, grid) if planar else (),
         fixed_points=points,
         completeness=Completeness(
@@ -84,7 +85,7 @@ def _trajectories(
 
 def _sampled(view: Slice, detail: Detail) -> Grid:
     """The field on the fine grid that zeros and nullclines are looked for on."""
-    count = detail.plane if len(view.axes) == 2 else detail.line
+    count = (detail.line, detail.plane, detail.solid)[len(view.axes) - 1]
     nodes = tuple(frozen(np.linspace(axis.low, axis.high, count)) for axis in view.axes)
     points = np.stack(np.meshgrid(*nodes, indexing="ij"), axis=-1)
     return Grid(nodes, frozen(rates_at(view, points)))
