@@ -51,6 +51,9 @@ def _state(state: State) -> str:
 def _field(field: Field) -> Iterator[str]:
     kind = f"map every {field.every!r} s" if field.is_map else "rates"
     yield _line("field", field.form, f"{kind} of {', '.join(field.driven)}", field.origin)
+    for coordinate in field.coordinates:
+        limits = f"[{coordinate.low!r}, {coordinate.high!r}]"
+        yield f"    coordinate {coordinate.name}  = {coordinate.code.text}  {limits}"
     for i, table in enumerate(field.tables):
         yield f"    table {i}  {_table(table)}"
     for term in field.terms:

@@ -33,14 +33,16 @@ def faults(program: Program) -> Iterator[str]:
 
 def _named(program: Program) -> Iterator[str]:
     outputs = tuple(output.name for output in program.outputs)
-    names = (*program.register, *outputs)
+    coordinates = tuple(coordinate.name for coordinate in program.field.coordinates)
+    names = (*program.register, *outputs, *coordinates)
     for name in (program.name, *names):
         if not name.isidentifier():
             yield f"{name!r} is no name"
     for name in _repeated(names):
         yield f"two variables are named '{name}'"
     if program.fidelity:
-        for name in {*program.fidelity.tolerance, *program.fidelity.region} - set(names):
+        known = {*program.register, *outputs}
+        for name in {*program.fidelity.tolerance, *program.fidelity.region} - known:
             yield f"fidelity speaks of '{name}', which does not exist"
     if not program.states:
         yield "the program has no state"
@@ -84,6 +86,19 @@ def _field(program: Program) -> Iterator[str]:
         for fault in _table(program, table):
             yield f"table {index}: {fault}"
     yield from _terms(field)
+    yield from _coordinates(program)
+
+
+def _coordinates(program: Program) -> Iterator[str]:
+    states = {state.name for state in program.states}
+    if len(program.field.coordinates) > MOST_VARIABLES:
+        yield "the field has too many coordinates"
+    for coordinate in program.field.coordinates:
+        read = states & set(coordinate.code.tokens)
+        if len(read) != 1:
+            yield f"the coordinate '{coordinate.name}' reads {len(read)} states, not one"
+        if not coordinate.low < coordinate.high:
+            yield f"the coordinate '{coordinate.name}' has no values"
 
 
 def _terms(field: Field) -> Iterator[str]:
@@ -98,7 +113,8 @@ def _terms(field: Field) -> Iterator[str]:
 
 def _table(program: Program, table: Table) -> Iterator[str]:
     names = tuple(axis.name for axis in table.axes)
-    if not 1 <= len(names) <= MOST_AXES or _repeated(names) or set(names) - set(program.register):
+    known = {*program.register, *(coordinate.name for coordinate in program.field.coordinates)}
+    if not 1 <= len(names) <= MOST_AXES or _repeated(names) or set(names) - known:
         yield f"its axes are not 1 to {MOST_AXES} variables"
     least = NODES_OF_SPLINE if table.method is Method.CUBIC else 2
     for axis in table.axes:
@@ -143,6 +159,8 @@ def _codes(program: Program) -> Iterator[tuple[str, Code, tuple[str, ...]]]:
         yield f"formula of '{name}'", code, register
     for term in program.field.terms:
         yield "coefficient of a term", term.coefficient, given
+    for coordinate in program.field.coordinates:
+        yield f"coordinate '{coordinate.name}'", coordinate.code, register
     if program.judge_when is not None:
         signals = tuple(binding.name for binding in program.bindings)
         yield "judge_when", program.judge_when, (*register, *signals)

@@ -62,7 +62,7 @@ def flow_of(program: Program, source: Source = Source.TABLES) -> Flow:
     results = tuple(_rate(program, index, source) for index in range(len(program.states)))
     return Flow(
         program=program,
-        tape=pack(results, program.register, program.field.tables),
+        tape=pack(results, program.register, program.field.tables, program.field.coordinates),
         domain=_domain(program),
         defaults=frozen(
             [

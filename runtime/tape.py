@@ -6,7 +6,7 @@ computed once, and a row is used again as soon as nothing reads it any more, so 
 lanes stays in the cache.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias, final
 
@@ -19,7 +19,7 @@ from runtime.kernels import tape as numbers
 from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.kernels.tape import MOST_AXES, TABLE, Tape
-from runtime.program import Method, Table
+from runtime.program import Axis, Coordinate, Method, Table
 
 MOST_TOKENS: Final = 200_000
 """More in one piece of code is refused: packing takes memory in proportion."""
@@ -39,24 +39,31 @@ class Sum:
     parts: tuple[tuple[Code, int, int], ...]
 
 
-def pack(results: Sequence[Code | Sum], names: tuple[str, ...], tables: Sequence[Table]) -> Tape:
+def pack(
+    results: Sequence[Code | Sum],
+    names: tuple[str, ...],
+    tables: Sequence[Table],
+    coordinates: Sequence[Coordinate] = (),
+) -> Tape:
     """The tape that computes `results` from a register with the entries `names`.
+
+    Tables stand over entries of the register and over `coordinates`, which are worked out first.
 
     Raises:
         ValueError: a token is neither operation, number nor name, or the code does not leave
             exactly one value.
     """
     graph = _Graph(names)
+    spots = {coordinate.name: graph.code(coordinate.code) for coordinate in coordinates}
     roots = [_root(graph, result) for result in results]
-    widths = [table.coefficients.shape[-1] for table in tables]
-    layout = _Layout(graph, roots, widths)
+    layout = _Layout(graph, roots, tables, spots)
     return Tape(
         len(names),
         layout.rows,
         read_only_integers(np.reshape(layout.instructions, (-1, 5))),
         frozen(graph.literals),
         read_only_integers([layout.place[root] for root in roots]),
-        *_packed_tables(tables, names),
+        *_packed_tables(tables, layout.axis_rows(tables)),
         machine_address(),
         block_address() if tables else 0,
     )
@@ -166,24 +173,54 @@ class _Graph:
 
 @final
 class _Layout:
-    """Rows for the values that the roots need, and the instructions in order."""
+    """Rows for the values that the roots need, and the instructions in order.
 
-    def __init__(self, graph: _Graph, roots: list[int], widths: list[int]) -> None:
+    First come the coordinates of the tables (`spots`: name and number), then the tables, then
+    everything else.
+    """
+
+    def __init__(
+        self,
+        graph: _Graph,
+        roots: list[int],
+        tables: Sequence[Table],
+        spots: Mapping[str, int],
+    ) -> None:
         needed = _needed(graph, roots)
+        used = sorted({graph.values[n][1] for n in needed if graph.values[n][0] == graph.COLUMN})
+        places = [spots[axis.name] for t in used for axis in tables[t].axes if axis.name in spots]
+        first = _needed(graph, places)
+        then = [number for number in needed if number not in set(first)]
+        self.spots = spots
+        self.entries = graph.entries
         self.place: dict[int, int] = {}
         self.instructions: list[tuple[int, int, int, int, int]] = []
         self.rows = len(graph.entries) + len(graph.literals)
-        self._give_tables(graph, needed, widths)
-        self._give_fixed(graph, needed)
-        self._give_computed(graph, needed, set(roots))
+        self.first_column = self._columns(tables, used)
+        self.kept = {*roots, *places}
+        self.last_use = {o: n for n in [*first, *then] for o in _operands(graph, n)}
+        self.free: list[int] = []
+        self._give_fixed(graph, [*first, *then])
+        self._give_computed(graph, first)
+        self.instructions += [(TABLE, self.first_column[table], table, 0, 0) for table in used]
+        self._give_computed(graph, then)
 
-    def _give_tables(self, graph: _Graph, needed: list[int], widths: list[int]) -> None:
-        used = {graph.values[n][1] for n in needed if graph.values[n][0] == graph.COLUMN}
-        self.first_column: dict[int, int] = {}
-        for table in sorted(used):
-            self.first_column[table] = self.rows
-            self.instructions.append((TABLE, self.rows, table, 0, 0))
-            self.rows += widths[table]
+    def axis_rows(self, tables: Sequence[Table]) -> list[list[int]]:
+        """The row of each axis of each table; 0 for an axis of a table that nothing reads."""
+        return [[self._axis_row(axis) for axis in table.axes] for table in tables]
+
+    def _axis_row(self, axis: Axis) -> int:
+        if axis.name in self.entries:
+            return self.entries[axis.name]
+        return self.place.get(self.spots[axis.name], 0)
+
+    def _columns(self, tables: Sequence[Table], used: list[int]) -> dict[int, int]:
+        """The row of the first column of each table used."""
+        columns = {}
+        for table in used:
+            columns[table] = self.rows
+            self.rows += tables[table].coefficients.shape[-1]
+        return columns
 
     def _give_fixed(self, graph: _Graph, needed: list[int]) -> None:
         for number in needed:
@@ -195,24 +232,22 @@ class _Layout:
             elif kind == graph.COLUMN:
                 self.place[number] = self.first_column[rest[0]] + rest[1]
 
-    def _give_computed(self, graph: _Graph, needed: list[int], roots: set[int]) -> None:
-        last_use = {o: n for n in needed for o in _operands(graph, n)}
-        free: list[int] = []
+    def _give_computed(self, graph: _Graph, needed: list[int]) -> None:
         for number in needed:
             if graph.values[number][0] < 0:
                 continue
             # The target is taken before the operands are given back: no row is read and
             # written by one instruction, so its loop vectorises.
-            target = free.pop() if free else self.rows
+            target = self.free.pop() if self.free else self.rows
             self.rows = max(self.rows, target + 1)
             self.place[number] = target
             operands = _operands(graph, number)
             a, b, c = (*(self.place[operand] for operand in operands), 0, 0)[:3]
             self.instructions.append((graph.values[number][0], target, a, b, c))
             for operand in set(operands):
-                done = last_use[operand] == number and operand not in roots
+                done = self.last_use[operand] == number and operand not in self.kept
                 if done and graph.values[operand][0] >= 0:
-                    free.append(self.place[operand])
+                    self.free.append(self.place[operand])
 
 
 def _operands(graph: _Graph, number: int) -> tuple[int, ...]:
@@ -248,9 +283,8 @@ def _short(code: Code) -> str:
 
 
 def _packed_tables(
-    tables: Sequence[Table], names: tuple[str, ...]
+    tables: Sequence[Table], rows: Sequence[list[int]]
 ) -> tuple[Integers, Integers, Integers, Booleans, Array, Array, Array]:
-    known = {name: index for index, name in enumerate(names)}
     offsets = np.cumsum([0, *(table.coefficients.size for table in tables)])
     count = len(tables)
     shapes = np.zeros((count, 4), dtype=np.int64)
@@ -262,7 +296,7 @@ def _packed_tables(
         cubic = table.method is Method.CUBIC
         shapes[t] = (cubic, d, table.coefficients.shape[-1], offsets[t])
         counts[t, :d] = table.coefficients.shape[:-1]
-        axes[t, :d] = [known[axis.name] for axis in table.axes]
+        axes[t, :d] = rows[t]
         periodic[t, :d] = [axis.periodic for axis in table.axes]
         lows[t, :d] = [axis.low for axis in table.axes]
         inverse_steps[t, :d] = [1.0 / axis.step for axis in table.axes]

@@ -93,8 +93,9 @@ def names_read(program: Program) -> set[str]:
     """The names that the field depends on."""
     field = program.field
     coefficients = tuple(term.coefficient for term in field.terms)
+    coordinates = tuple(coordinate.code for coordinate in field.coordinates)
     axes = {axis.name for table in field.tables for axis in table.axes}
-    return axes | _tokens((*(field.formula or ()), *coefficients))
+    return axes | _tokens((*(field.formula or ()), *coefficients, *coordinates))
 
 
 def held(series: Series, times: Array) -> Array:
