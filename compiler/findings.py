@@ -36,8 +36,10 @@ class Findings:
         """Add a warning, placed like an error."""
         self._found.append(self._loaded.warning(code, path, message, remedy, key=key))
 
-    def fault(self, path: Path, fault: Fault) -> None:
-        """Add a fault in the text at `path`, under the very characters."""
+    def fault(self, path: Path, fault: Fault, *, key: bool = False) -> None:
+        """Add a fault in the text at `path`, or in its key, under the very characters."""
         within = (fault.start, fault.end)
-        found = self._loaded.error(fault.code, path, fault.message, fault.help, within=within)
+        found = self._loaded.error(
+            fault.code, path, fault.message, fault.help, within=within, key=key
+        )
         self._found.append(found)

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self, TypeAlias, final
 
 from pydantic import Field, WithJsonSchema, model_validator
 
+from spec_schema.expect import ClaimSpec
 from spec_schema.field_forms import FieldSpec
 from spec_schema.mistake import Mistake, refuse
 from spec_schema.trace_mapping import TraceSpec
@@ -184,6 +185,13 @@ class BehaviorSpec(StrictModel):
         default=None,
         description="What is known of whether a real robot can do this.",
         examples=[{"level": "demonstrated", "evidence": "traces/husky.mcap"}],
+    )
+    expect: tuple[ClaimSpec, ...] = Field(
+        default=(),
+        strict=False,
+        description="Claims about the topology of the field, each a sentence; `specc check "
+        "--claims` proves or refutes them.",
+        examples=[["one stable cycle", "no other attractor"]],
     )
     fidelity: Fidelity | None = Field(
         default=None,

@@ -148,7 +148,7 @@ def _diagnostic(places: Places, mistake: Mistake) -> Diagnostic:
 
 def _span(places: Places, path: Path, within: tuple[int, int] | None, *, key: bool) -> Span:
     if within is not None:
-        return places.within(path, *within)
+        return places.within(path, *within, key=key)
     return places.key(path) if key else places.value(path)
 
 

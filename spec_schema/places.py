@@ -47,17 +47,21 @@ class Places:
         """The longest beginning of `path` that stands in the text."""
         return path[: self._walk(path)[2]]
 
-    def within(self, path: Path, start: int, end: int) -> Span:
-        """Where the characters `start` to `end` of a text stand.
+    def within(self, path: Path, start: int, end: int, *, key: bool = False) -> Span:
+        """Where the characters `start` to `end` of a text, or of the last key of the path, stand.
 
         The whole value where the text on the page is not the text that was read: several lines,
         escapes, or a number.
         """
-        node = self._walk(path)[1]
-        offset = self._offset(node)
-        if offset is None or not 0 <= start <= end <= node.span.end_column - node.span.column:
-            return node.span
-        line, column = node.span.line, node.span.column + offset
+        entry, node, depth = self._walk(path)
+        span = node.span
+        text = node.text if isinstance(node, Scalar) else None
+        if key and entry is not None:
+            span, text = entry.key, str(path[depth - 1])
+        offset = self._offset(span, text)
+        if offset is None or not 0 <= start <= end <= span.end_column - span.column:
+            return span
+        line, column = span.line, span.column + offset
         return Span(line, column + start, line, column + end)
 
     def dotted(self, path: Path) -> str:
@@ -84,14 +88,14 @@ class Places:
                     return entry, node, depth
         return entry, node, len(path)
 
-    def _offset(self, node: Node) -> int | None:
+    def _offset(self, span: Span, text: str | None) -> int | None:
         """How many characters precede the text in its span; None where they differ."""
-        if not isinstance(node, Scalar) or node.span.line != node.span.end_line:
+        if text is None or span.line != span.end_line:
             return None
-        shown = self.source.line(node.span.line)[node.span.column - 1 : node.span.end_column - 1]
-        if shown == node.text:
+        shown = self.source.line(span.line)[span.column - 1 : span.end_column - 1]
+        if shown == text:
             return 0
-        return 1 if shown in [f"{quote}{node.text}{quote}" for quote in _QUOTES] else None
+        return 1 if shown in [f"{quote}{text}{quote}" for quote in _QUOTES] else None
 
 
 def _step(part: str | int) -> str:
