@@ -10,7 +10,12 @@ from verifier.topology.slices import Slice
 MARGIN: Final = 0.03
 """The share of the width that is left free at each edge."""
 
-GENERATORS: Final = {1: 1.6180339887498949, 2: 1.3247179572447460}
+GENERATORS: Final = {
+    1: 1.6180339887498949,
+    2: 1.3247179572447460,
+    3: 1.2207440846057596,
+    4: 1.1673039782614187,
+}
 """The positive roots of x^(m+1) = x + 1."""
 
 
