@@ -1,0 +1,44 @@
+"""Many points of a slice, moved along its flow: the means of everything that follows paths.
+
+m: number of axes; L: lanes; T: times.
+"""
+
+from typing import Final
+
+import numpy as np
+
+from runtime.arrays import Array
+from runtime.integrators import adaptive
+from verifier.topology.seeds import spread
+from verifier.topology.slices import Slice, rates_at, shortest, states_at
+
+MOST_STEPS: Final = 200_000
+"""A path that needs more steps chatters along a jump of the field."""
+
+PROBES: Final = 256
+"""Places at which the speed of a field is looked at."""
+
+
+def moved(view: Slice, starts: Array, times: Array, tolerance: float) -> Array:
+    """Points (L, T, m) from `starts` (L, m) at `times` (T,), NaN after they left the domain.
+
+    tolerance: the local error of each step, as a share of the widths. Times begin at 0 and may
+    run backwards. Paths are continuous on periodic axes: values may leave the domain there by
+    whole periods.
+    """
+    x = states_at(view, starts)
+    if not len(x):
+        return np.empty((0, times.size, len(view.axes)))
+    widths = np.ones(x.shape[-1])
+    widths[list(view.columns)] = view.width
+    found = adaptive(view.flow, x, view.u, times, tolerance, tolerance * widths, MOST_STEPS)
+    points = found.states[..., view.columns]
+    travelled = np.cumsum(shortest(view, np.diff(points, axis=1)), axis=1)
+    return np.asarray(np.concatenate([starts[:, None], starts[:, None] + travelled], axis=1))
+
+
+def pace(view: Slice) -> float:
+    """The time in which a typical point of the slice crosses it, s; infinite if nothing moves."""
+    speed = np.linalg.norm(rates_at(view, spread(view, PROBES)) / view.width, axis=-1)
+    moving = speed[np.isfinite(speed) & (speed > 0.0)]
+    return float(1.0 / np.median(moving)) if moving.size else np.inf
