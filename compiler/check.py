@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
+from compiler.claims import lower_claims
 from compiler.declare import Declarations, declare
 from compiler.findings import Findings
 from compiler.lower_parts import (
@@ -14,7 +15,7 @@ from compiler.lower_parts import (
 from compiler.read_expressions import Expressions, read_expressions
 from compiler.references import check_references
 from compiler.settings import Settings, settings_of
-from runtime.program import Binding, Fidelity
+from runtime.program import Binding, Claim, Fidelity
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Examined, Loaded, examine
@@ -32,6 +33,7 @@ class Checked:
     expressions: Expressions
     fidelity: Fidelity | None
     bindings: tuple[Binding, ...]
+    claims: tuple[Claim, ...]
     settings: Settings
     findings: Findings
 
@@ -71,6 +73,9 @@ def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:
     expressions = read_expressions(spec, declared, findings)
     fidelity = lower_fidelity(spec, declared, loaded, findings)
     bindings = lower_bindings(spec, declared, loaded, findings)
+    claims = lower_claims(spec, declared, loaded, findings)
     settings = settings_of(spec, declared, findings)
-    check_references(spec, declared, expressions, findings)
-    return Checked(loaded, spec, declared, expressions, fidelity, bindings, settings, findings)
+    check_references(spec, declared, expressions, claims, findings)
+    return Checked(
+        loaded, spec, declared, expressions, fidelity, bindings, claims, settings, findings
+    )

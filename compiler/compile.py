@@ -186,4 +186,5 @@ def _assembled(checked: Checked, field: Field) -> Program:
         realizes=lower_realizes(spec, checked.loaded),
         feasibility=lower_feasibility(spec),
         source=origin_of(checked.loaded),
+        claims=checked.claims,
     )

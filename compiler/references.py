@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable
 
+from compiler.claims import names_read
 from compiler.declare import Declarations
 from compiler.findings import Findings
 from compiler.read_expressions import Expressions, signals
-from runtime.program import Role
+from runtime.program import Claim, Role
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.field_forms import Arrows, Form, Grid, Module
@@ -16,7 +17,11 @@ MOST_AXES = 5
 
 
 def check_references(
-    spec: BehaviorSpec, declared: Declarations, expressions: Expressions, findings: Findings
+    spec: BehaviorSpec,
+    declared: Declarations,
+    expressions: Expressions,
+    claims: tuple[Claim, ...],
+    findings: Findings,
 ) -> None:
     """A finding for each name that means nothing where it stands, and for each left unused."""
     _check_axes(spec.field.form, declared, findings)
@@ -25,7 +30,7 @@ def check_references(
     _check_signals(spec, declared, expressions, findings)
     read = _read_by_field(spec.field.form, declared, expressions)
     _warn_of_imitation(read, declared, findings)
-    _warn_of_unused(spec, expressions, read, findings)
+    _warn_of_unused(spec, expressions, read | names_read(claims), findings)
 
 
 def axes_of(form: Form, declared: Declarations) -> tuple[str, ...]:
