@@ -96,7 +96,7 @@ class ClaimReader:
         key = PERIOD if PERIOD in given else ALL
         if options.period is None or key not in given:
             return default
-        return self._share(given[key], (*self._path, "within", key)) or default
+        return self._share(given[key], self._within_path(key)) or default
 
     def over(self, options: ClaimOptions) -> tuple[Span, ...]:
         """The controls that take all values."""
@@ -237,14 +237,16 @@ class ClaimReader:
         key = state.name if state.name in given else ALL
         if key not in given:
             return PLACE_WITHIN * width
-        path: Path = (*self._path, "within", key)
-        value = given[key]
+        path, value = self._within_path(key), given[key]
         if key == ALL or (isinstance(value, str) and _PERCENT.fullmatch(value)):
             return (self._share(value, path) or PLACE_WITHIN) * width
         room = si_value(value, self._unit(state.name), path, self._findings)
         if room is not None and room <= 0.0:
             self._findings.error("S277", path, f"'within' must be positive (got {value})", _HELP)
         return room or PLACE_WITHIN * width
+
+    def _within_path(self, key: str) -> Path:
+        return (*self._path, "within", *([key] if key != ALL else []))
 
     def _share(self, value: float | str, path: Path) -> float | None:
         found = _PERCENT.fullmatch(value) if isinstance(value, str) else None
