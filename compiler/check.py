@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
+from compiler.check_ways import check_ways
 from compiler.claims import lower_claims
 from compiler.declare import Declarations, declare
 from compiler.findings import Findings
@@ -13,11 +14,13 @@ from compiler.lower_parts import (
     lower_fidelity,
 )
 from compiler.read_expressions import Expressions, read_expressions
+from compiler.read_modes import check_moved_values
 from compiler.references import check_references
 from compiler.settings import Settings, settings_of
 from runtime.program import Binding, Claim, Fidelity
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.field_modes import Modes
 from spec_schema.load import Examined, Loaded, examine
 from spec_schema.source import Span
 
@@ -76,6 +79,9 @@ def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:
     claims = lower_claims(spec, declared, loaded, findings)
     settings = settings_of(spec, declared, findings)
     check_references(spec, declared, expressions, claims, findings)
+    check_moved_values(spec, findings)
+    if isinstance(spec.field.form, Modes) and not findings.has_errors:
+        check_ways(spec.field.form, expressions.ways, declared, findings)
     return Checked(
         loaded, spec, declared, expressions, fidelity, bindings, claims, settings, findings
     )

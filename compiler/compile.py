@@ -20,6 +20,7 @@ from compiler.horizon import excess
 from compiler.lower_field import Progress, formula_codes, lower_field, measured
 from compiler.lower_parts import (
     lower_feasibility,
+    lower_guards,
     lower_judge_when,
     lower_outputs,
     lower_realizes,
@@ -34,7 +35,8 @@ from compiler.terms import TooManyCasesError
 from runtime.program import Field, Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
-from spec_schema.field_forms import Formula, Step
+from spec_schema.field_forms import Form, Formula, Step
+from spec_schema.field_modes import Modes
 from spec_schema.load import Loaded, examine
 
 MENDED_BY_CODE = {"S241", "S242", "S245"}  # a formula that is kept as code needs no table
@@ -88,7 +90,10 @@ def _untabulated(checked: Checked) -> Field:
     name, every = type(form).__name__.lower(), checked.settings.every
     driven = tuple(state.name for state in checked.declared.driven)
     field = Field(driven, name, every, (), (), (), None, checked.loaded.origin(("field",)))
-    if isinstance(form, Formula | Step):
+    if isinstance(form, Modes):
+        guards = lower_guards(checked.expressions.ways, checked.loaded)
+        field = replace(field, mode=form.of, guards=guards)
+    if isinstance(form, Formula | Step | Modes):
         return formula_codes(checked.expressions.rates, field)
     return field
 
@@ -138,7 +143,7 @@ def _with_tables(
 
 
 def _plan(checked: Checked) -> Plan:
-    if isinstance(checked.spec.field.form, Formula | Step):
+    if isinstance(checked.spec.field.form, Formula | Step | Modes):
         return _plan_formula(checked)
     beside = Path(checked.loaded.source.name).resolve().parent
     plan = plan_sampled(checked.spec, checked.declared, beside, checked.findings)
@@ -148,19 +153,29 @@ def _plan(checked: Checked) -> Plan:
 
 
 def _plan_formula(checked: Checked) -> Plan:
-    form = checked.spec.field.form
-    base = ("field", "formula") if isinstance(form, Formula) else ("field", "step", "next")
+    base, has_keys = _place_of_rates(checked.spec.field.form)
     try:
         return plan_formula(checked.expressions.rates, checked.declared)
     except UnboundedError as error:
         message = f"the factor {error.coefficient} is not finite all over the controls' domains"
         remedy = "shrink the domain of a control so that it leaves the place out"
-        checked.findings.error("S243", (*base, error.state), message, remedy)
+        checked.findings.error("S243", (*base, error.state) if has_keys else base, message, remedy)
     except TooManyCasesError as error:
         message = f"a term tells {error.combinations} combinations of discrete values apart"
         remedy = "split it into a sum of terms, or keep it as code: `table: {keep: code}`"
         checked.findings.error("S245", base, message, remedy, key=True)
     raise SpecError(checked.findings.diagnostics)
+
+
+def _place_of_rates(form: Form) -> tuple[tuple[str, ...], bool]:
+    """Where the expressions of the rates stand, and whether there is one for each driven state."""
+    match form:
+        case Formula():
+            return ("field", "formula"), True
+        case Step():
+            return ("field", "step", "next"), True
+        case _:
+            return ("field", "modes"), False
 
 
 def _path_of(error: TableError, checked: Checked) -> tuple[str, ...]:

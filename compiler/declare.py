@@ -50,8 +50,8 @@ class Declarations:
 
     @property
     def driven(self) -> tuple[State, ...]:
-        """The states that the field moves."""
-        return tuple(state for state in self.states if state.is_driven)
+        """The states that the field gives a rate; the one whose values are its modes has none."""
+        return tuple(s for s in self.states if s.is_driven and s.kind is not Kind.DISCRETE)
 
     @property
     def continuous(self) -> frozenset[str]:

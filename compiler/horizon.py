@@ -4,6 +4,7 @@ The same starts run through the tables and through the field's own formula; wher
 differ by less than a tenth of the fidelity tolerance (design, section 4, item 4).
 """
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -23,11 +24,13 @@ ACCURACY: Final = 1e-8  # of the integration, relative; far below any tenth of a
 def excess(program: Program) -> dict[str, float]:
     """How many times each judged state departs from a tenth of its tolerance at the horizon.
 
-    Empty where there is nothing to compare: no fidelity, no formula, or no tables.
+    Empty where there is nothing to compare: no fidelity, no formula, or no tables. A mode stays
+    what it was at the start, as it is measured where a verdict is made.
     """
     field, fidelity = program.field, program.fidelity
     if fidelity is None or field.formula is None or not field.terms:
         return {}
+    program = replace(program, field=replace(field, guards=()))
     x, u = random_points(program, fidelity.region, STARTS, SEED)
     ends = [_ends(program, source, x, u, fidelity.horizon) for source in Source]
     apart = np.abs(ends[0] - ends[1])

@@ -32,6 +32,7 @@ Progress: TypeAlias = Callable[[str, int, int], None]
 RELATIVE = {  # of the largest rate, where the spec declares no tolerance
     ("formula", Method.CUBIC): 1e-6,
     ("step", Method.CUBIC): 1e-6,
+    ("modes", Method.CUBIC): 1e-6,
     ("module", Method.CUBIC): 1e-5,
     ("grid", Method.CUBIC): 1e-5,
     ("arrows", Method.CUBIC): 1e-3,  # a sketch is not known better than that

@@ -8,11 +8,13 @@ from compiler.declare import Declarations, program_unit
 from compiler.findings import Findings
 from compiler.quantities import ONE, SECOND, si_limit, si_value, unit_of
 from compiler.read_expressions import Expressions
+from compiler.read_modes import Way
 from runtime.code import Code
 from runtime.program import (
     Binding,
     Feasibility,
     Fidelity,
+    Guard,
     Origin,
     Output,
     Realization,
@@ -224,6 +226,20 @@ def _values(name: str, entry: TraceEntry, declared: Declarations) -> tuple[tuple
         return tuple((value, index) for index, value in enumerate(meant))
     known = [(text, value) for text, value in entry.values.items() if value in meant]
     return tuple((text, meant.index(value)) for text, value in known)
+
+
+def lower_guards(ways: tuple[Way, ...], loaded: Loaded) -> tuple[Guard, ...]:
+    """The ways as the machine takes them."""
+    return tuple(
+        Guard(
+            way.mode,
+            way.target,
+            code_of(way.condition),
+            tuple((name, code_of(expr)) for name, expr in way.resets.items()),
+            loaded.origin(way.path),
+        )
+        for way in ways
+    )
 
 
 def lower_judge_when(expressions: Expressions) -> Code | None:

@@ -7,36 +7,42 @@ from typing import final
 from compiler.declare import Declarations
 from compiler.findings import Findings
 from compiler.quantities import unit_of
+from compiler.read_modes import Way, read_modes
 from compiler.read_rates import read_rates
 from compiler.scope import Scope, checked, dimension_in, read, scope_of, wanted_of
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.dimension import DIMENSIONLESS
 from spec_schema.expressions.tree import Expr
 from spec_schema.field_forms import Formula, Step
+from spec_schema.field_modes import Modes
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Expressions:
-    """The trees of a behavior. rates: of the driven states (for a step map, their next values)."""
+    """The trees of a behavior.
+
+    rates: of the driven states (for a step map, their next values). ways: between its modes.
+    """
 
     rates: Mapping[str, Expr]
     closures: Mapping[str, Expr]
     outputs: Mapping[str, Expr]
     judge_when: Expr | None
+    ways: tuple[Way, ...] = ()
 
 
 def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Expressions:
     """Every expression that can be read, and a finding for each mistake in one."""
     scope = scope_of(declared)
-    rates = _rates(spec, declared, scope, findings)
+    rates, ways = _rates(spec, declared, scope, findings)
     closures = _closures(spec, declared, scope, findings)
     outputs = _outputs(spec, scope, findings)
     judge_when = None
     if spec.judge_when is not None:
         wider = _with_signals(spec, scope, findings)
         judge_when = read(spec.judge_when, ("judge_when",), wider, findings)
-    return Expressions(rates, closures, outputs, judge_when)
+    return Expressions(rates, closures, outputs, judge_when, ways)
 
 
 def signals(spec: BehaviorSpec) -> tuple[str, ...]:
@@ -58,15 +64,17 @@ def _with_signals(spec: BehaviorSpec, scope: Scope, findings: Findings) -> Scope
 
 def _rates(
     spec: BehaviorSpec, declared: Declarations, scope: Scope, findings: Findings
-) -> dict[str, Expr]:
+) -> tuple[dict[str, Expr], tuple[Way, ...]]:
     match spec.field.form:
         case Formula() as form:
-            return read_rates(form.rates, ("field", "formula"), declared, scope, findings)
+            return read_rates(form.rates, ("field", "formula"), declared, scope, findings), ()
         case Step() as form:
             base = ("field", "step", "next")
-            return read_rates(form.next, base, declared, scope, findings, is_map=True)
+            return read_rates(form.next, base, declared, scope, findings, is_map=True), ()
+        case Modes() as form:
+            return read_modes(form, declared, scope, findings)
         case _:
-            return {}
+            return {}, ()
 
 
 def _closures(

@@ -56,15 +56,13 @@ def _match_names(
         findings.error("S204", path, message, remedy, key=True)
     for name in given:
         if name not in driven:
-            known = name in {state.name for state in declared.states}
-            why = "is only sensed, so the field gives no rate for it" if known else "is no state"
-            findings.error(
-                "S205",
-                (*path, name),
-                f"'{name}' {why}",
-                "write `role: both` or a `closure`" if known else f"the states: {_listed(driven)}",
-                key=True,
-            )
+            why, remedy = "is no state", f"the states: {_listed(driven)}"
+            if name in declared.values:
+                why, remedy = "is discrete, so it has no rate", "remove it"
+            elif name in {state.name for state in declared.states}:
+                why = "is only sensed, so the field gives no rate for it"
+                remedy = "write `role: both` or a `closure`"
+            findings.error("S205", (*path, name), f"'{name}' {why}", remedy, key=True)
 
 
 def _listed(names: Collection[str]) -> str:

@@ -10,6 +10,7 @@ from runtime.program import Claim, Role
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.field_forms import Arrows, Form, Grid, Module
+from spec_schema.field_modes import Modes
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean
 
@@ -29,7 +30,7 @@ def check_references(
     _check_trace(spec, declared, findings)
     _check_signals(spec, declared, expressions, findings)
     read = _read_by_field(spec.field.form, declared, expressions)
-    _warn_of_imitation(read, declared, findings)
+    _warn_of_imitation(read - mode_of(spec.field.form), declared, findings)
     _warn_of_unused(spec, expressions, read | names_read(claims), findings)
 
 
@@ -184,8 +185,14 @@ def _check_signals(
             findings.warning("S221", ("trace", name), message, remedy, key=True)
 
 
+def mode_of(form: Form) -> frozenset[str]:
+    """The name of the state whose values are the field's modes, or nothing."""
+    return frozenset({form.of}) if isinstance(form, Modes) else frozenset()
+
+
 def _read_by_field(form: Form, declared: Declarations, expressions: Expressions) -> frozenset[str]:
     read = frozenset(name for e in expressions.rates.values() for name in names_in(e))
+    read = read.union(*(way.reads for way in expressions.ways))
     return read | frozenset(axes_of(form, declared))
 
 

@@ -10,6 +10,7 @@ from compiler.quantities import SECOND, per_second, si_value
 from runtime.program import Kind, Method
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.field_forms import Formula, Step
+from spec_schema.field_modes import Modes
 
 LEAST = {Method.CUBIC: 4, Method.LINEAR: 2}
 """Nodes that an axis needs."""
@@ -36,7 +37,7 @@ class Settings:
 def settings_of(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Settings:
     """The settings that can be read, and a finding for each that can't be used."""
     form = spec.field.form
-    if spec.table.keep == "code" and not isinstance(form, Formula | Step):
+    if spec.table.keep == "code" and not isinstance(form, Formula | Step | Modes):
         message = f"a field given as {type(form).__name__.lower()} can't be kept as code"
         findings.error("S246", ("table", "keep"), message, "write `keep: tables`")
     method = Method(spec.table.method)

@@ -419,5 +419,7 @@ class Program:
 
     @property
     def driven(self) -> tuple[int, ...]:
-        """Indices of the driven states."""
-        return tuple(i for i, state in enumerate(self.states) if state.is_driven)
+        """Indices of the driven states; the one that holds the mode is not among them."""
+        return tuple(
+            i for i, s in enumerate(self.states) if s.is_driven and s.name != self.field.mode
+        )

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self, TypeAlias, final
 
 from pydantic import ConfigDict, Field, RootModel, Strict, model_validator
 
+from spec_schema.field_modes import Modes
 from spec_schema.grid_values import Nested
 from spec_schema.mistake import Mistake, refuse
 from spec_schema.value_types import (
@@ -238,14 +239,14 @@ class Step(StrictModel):
     )
 
 
-Form: TypeAlias = Formula | Arrows | Grid | Module | Step
+Form: TypeAlias = Formula | Arrows | Grid | Module | Step | Modes
 
-FORMS = ("formula", "arrows", "grid", "module", "step")
+FORMS = ("formula", "arrows", "grid", "module", "step", "modes")
 
 
 @final
 class FieldSpec(StrictModel):
-    """The vector field, in exactly one of five forms."""
+    """The vector field, in exactly one of its forms."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
 
@@ -275,6 +276,11 @@ class FieldSpec(StrictModel):
         default=None,
         description="A discrete-time map instead of rates: where the system is one step later.",
         examples=[{"every": "0.1 s", "next": {"x": "x + 0.1*v"}}],
+    )
+    modes: Modes | None = Field(
+        default=None,
+        description="A field for each value of a discrete state, and when one follows another.",
+        examples=[{"of": "going", "each": {"on": {"formula": {"x": "v"}}}}],
     )
 
     @property

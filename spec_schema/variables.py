@@ -116,11 +116,6 @@ class StateSpec(StrictModel):
             if self.hold is not None and self.hold not in self.values:
                 message = f"{_shown(self.hold)} is none of the values"
                 yield Mistake("S114", message, f"write one of {listed(self.values)}", ("hold",))
-        if self.role != "sensed":
-            message = (
-                f"a discrete variable is only sensed here; this one's role is {quoted(self.role)}"
-            )
-            yield Mistake("S112", message, "write 'role: sensed'", ("role",))
         for key in ("unit", "domain"):
             if getattr(self, key) is not None:
                 message = f"a discrete variable has values, no {key}"

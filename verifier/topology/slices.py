@@ -26,7 +26,7 @@ class SliceError(Exception):
 class Slice:
     """A behavior, reduced to the rates of its axes.
 
-    program: only the axes move in it; whole: nothing is held but what the spec holds.
+    program: only the axes move in it, and a mode stays; whole: only what the spec holds is held.
     formula: the slice by the spec's own expressions, None where there are none beside tables.
     accuracy: (m,) the tables' measured error of each axis' rate; resolution: (m, m) what that
     may do to entry (i, j) of the Jacobian.
@@ -217,6 +217,8 @@ def _kept(field: Field, axes: tuple[str, ...]) -> Field:
         terms=terms,
         bounds=tuple(field.bounds[i] for i in kept) if field.bounds else (),
         formula=None if field.formula is None else tuple(field.formula[i] for i in kept),
+        mode="",
+        guards=(),
     )
 
 

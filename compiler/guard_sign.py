@@ -1,0 +1,55 @@
+"""A condition as a number that is zero or more where it holds, so that its opening can be located.
+
+`a >= b` becomes a - b, `and` the least, `or` the greatest of both sides. What equality decides has
+no side to cross, unless it is the value of a discrete variable, which is +1 or -1.
+"""
+
+from collections.abc import Collection
+from typing import Final
+
+from spec_schema.expressions.tree import Apply, Expr, Name, Number
+
+OPPOSITE: Final = {"ge": "lt", "gt": "le", "le": "gt", "lt": "ge", "eq": "ne", "ne": "eq"}
+DUAL: Final = {"and": "or", "or": "and"}
+EXTREME: Final = {"and": "min", "or": "max"}
+
+
+def signed(condition: Expr, discrete: Collection[str]) -> Expr | None:
+    """The signed form of a condition; None where it is not made of comparisons.
+
+    >>> from spec_schema.expressions.parse import parse
+    >>> from spec_schema.expressions.printers.text import to_text
+    >>> found = signed(parse("x >= 1 and not v > 0"), ())
+    >>> found and to_text(found)
+    'min(x - 1, 0 - v)'
+    """
+    match condition:
+        case Apply(op="ge" | "gt", operands=(a, b)):
+            return Apply("sub", (a, b))
+        case Apply(op="le" | "lt", operands=(a, b)):
+            return Apply("sub", (b, a))
+        case Apply(op="eq" | "ne", operands=operands) if _is_choice(operands, discrete):
+            return Apply("where", (condition, Number(1.0), Number(-1.0)))
+        case Apply(op="and" | "or" as op, operands=(a, b)):
+            left, right = signed(a, discrete), signed(b, discrete)
+            return None if left is None or right is None else Apply(EXTREME[op], (left, right))
+        case Apply(op="not", operands=(inner,)):
+            opposite = _negated(inner)
+            return None if opposite is None else signed(opposite, discrete)
+    return None
+
+
+def _is_choice(operands: tuple[Expr, ...], discrete: Collection[str]) -> bool:
+    return any(isinstance(part, Name) and part.name in discrete for part in operands)
+
+
+def _negated(condition: Expr) -> Expr | None:
+    """The condition that holds where this one does not."""
+    match condition:
+        case Apply(op="not", operands=(inner,)):
+            return inner
+        case Apply(op="and" | "or" as op, operands=(a, b)):
+            return Apply(DUAL[op], (Apply("not", (a,)), Apply("not", (b,))))
+        case Apply(op=op, operands=operands) if op in OPPOSITE:
+            return Apply(OPPOSITE[op], operands)
+    return None
