@@ -13,14 +13,13 @@ from tests.verifier.topology_scenes import (
     OSCILLATOR,
     behavior,
     henon,
-    linear,
     pendulum,
     plane,
     state,
     tabulated,
     van_der_pol,
 )
-from verifier.topology.features import Course, Portrait
+from verifier.topology.features import Portrait
 from verifier.topology.portrait import Detail, portrait
 
 LINES_ONLY = Detail(trajectories=0)
@@ -90,35 +89,6 @@ def test_all_paths_of_the_hopf_field_end_on_its_cycle_or_leave_backward() -> Non
     assert len(paths) >= 3
     for path in paths:
         assert math.hypot(*path.points[-1]) == pytest.approx(1.0, abs=1e-3)
-
-
-def test_the_manifolds_of_a_linear_saddle_are_its_eigenvectors() -> None:
-    found = portrait(linear(1.0, 0.5, 0.2, -1.0))
-    root = math.sqrt(1.1)
-
-    manifolds = [p for p in found.trajectories if p.course is not Course.SEED]
-    assert [p.course for p in manifolds] == [Course.UNSTABLE_MANIFOLD] * 2 + [
-        Course.STABLE_MANIFOLD
-    ] * 2
-    for path in manifolds:
-        slope = (
-            (root - 1.0) / 0.5 if path.course is Course.UNSTABLE_MANIFOLD else (-root - 1.0) / 0.5
-        )
-        assert path.points[:, 1] == pytest.approx(slope * path.points[:, 0], abs=1e-6)
-        ends = path.points if path.course is Course.UNSTABLE_MANIFOLD else path.points[::-1]
-        assert np.abs(ends[0]).max() < 1e-3
-        assert np.abs(ends[-1]).max() > 1.9
-
-
-def test_the_separatrix_of_a_frictionless_pendulum_has_the_energy_of_its_saddle() -> None:
-    found = portrait(pendulum(0.0))
-
-    manifolds = [p for p in found.trajectories if p.course is not Course.SEED]
-    assert manifolds
-    for path in manifolds:
-        angle, rate = path.points.T
-        energy = 0.5 * rate**2 - np.cos(angle)
-        assert energy == pytest.approx(np.ones(len(energy)), abs=1e-5)
 
 
 def test_a_path_over_the_seam_of_an_angle_is_continuous() -> None:

@@ -8,8 +8,19 @@ import numpy as np
 
 from runtime.arrays import frozen
 from runtime.program import Program
-from verifier.topology.features import Completeness, FixedPoint, Grid, Portrait, Trajectory
+from verifier.topology.basins import find_basins
+from verifier.topology.cycles import find_cycles
+from verifier.topology.features import (
+    Completeness,
+    Cycle,
+    FixedPoint,
+    Grid,
+    Portrait,
+    Separatrix,
+    Trajectory,
+)
 from verifier.topology.fixed_points import find_fixed_points
+from verifier.topology.manifolds import find_separatrices
 from verifier.topology.nullclines import find_nullclines
 from verifier.topology.orbits import find_orbits
 from verifier.topology.slices import Slice, cut, rates_at
@@ -19,12 +30,18 @@ from verifier.topology.trajectories import find_trajectories
 @final
 @dataclass(frozen=True, slots=True)
 class Detail:
-    """How finely to look: points per axis by the number of axes, and how many trajectories."""
+    """How finely to look: points per axis by the number of axes, and how many trajectories.
+
+    cycles, separatrices: whether they are looked for. basins: cells per axis, 0 for none.
+    """
 
     plane: int = 257
     line: int = 2049
     solid: int = 33
     trajectories: int = 4
+    cycles: bool = True
+    separatrices: bool = True
+    basins: int = 0
 
 
 EVERYTHING: Final = Detail()
@@ -50,6 +67,8 @@ def portrait(
     view = cut(program, axes, held or {})
     grid = _sampled(view, detail)
     points, remarks = find_fixed_points(view, grid)
+    cycles, hints = _cycles(view, points, detail)
+    separatrices = find_separatrices(view, points, cycles) if detail.separatrices else ()
     planar = len(view.axes) == 2
     return Portrait(
         name=program.name,
@@ -63,24 +82,35 @@ def portrait(
         completeness=Completeness(
             complete=False, undecided=(), lost=frozen(np.empty((0, len(view.axes)))), about=""
         ),
-        cycles=(),
-        separatrices=(),
-        basins=None,
+        cycles=cycles,
+        separatrices=separatrices,
+        basins=find_basins(view, points, cycles, detail.basins),
         switching=(),
-        trajectories=_trajectories(view, grid, detail, points),
-        notes=(*remarks, *_notes(program, view, grid)),
+        trajectories=_trajectories(view, grid, detail, points, separatrices),
+        notes=(*remarks, *hints, *_notes(program, view, grid)),
     )
 
 
+def _cycles(
+    view: Slice, points: tuple[FixedPoint, ...], detail: Detail
+) -> tuple[tuple[Cycle, ...], tuple[str, ...]]:
+    """The cycles, and notes on them; none where nobody asked."""
+    return find_cycles(view, points) if detail.cycles else ((), ())
+
+
 def _trajectories(
-    view: Slice, grid: Grid, detail: Detail, points: tuple[FixedPoint, ...]
+    view: Slice,
+    grid: Grid,
+    detail: Detail,
+    points: tuple[FixedPoint, ...],
+    separatrices: tuple[Separatrix, ...],
 ) -> tuple[Trajectory, ...]:
     """Orbits of a map, trajectories in a plane; a line shows its own."""
     if view.is_map:
         return find_orbits(view, detail.trajectories)
     if len(view.axes) == 1 or detail.trajectories == 0:
         return ()
-    return find_trajectories(view, grid, points, detail.trajectories)
+    return find_trajectories(view, grid, points, separatrices, detail.trajectories)
 
 
 def _sampled(view: Slice, detail: Detail) -> Grid:

@@ -1,4 +1,4 @@
-"""A few trajectories that show a flow: through well-spread seeds, and out of its saddles.
+"""A few trajectories that show a flow: out of its sources, and through well-spread seeds.
 
 m: number of axes; L: lanes.
 """
@@ -8,7 +8,14 @@ from typing import Final
 import numpy as np
 
 from runtime.arrays import Array, Booleans
-from verifier.topology.features import Course, FixedPoint, Grid, PointKind, Trajectory
+from verifier.topology.features import (
+    Course,
+    FixedPoint,
+    Grid,
+    PointKind,
+    Separatrix,
+    Trajectory,
+)
 from verifier.topology.paths import (
     LONGEST,
     Follower,
@@ -29,9 +36,6 @@ SAMPLES: Final = 400
 CELLS: Final = 20
 """The portrait is split into this many cells per axis to see what a trajectory covers."""
 
-BESIDE_SADDLE: Final = 1e-4
-"""How far from a saddle, as a share of the widths, its manifolds are begun."""
-
 BESIDE_SOURCE: Final = 0.02
 """How far from an unstable node or focus a trajectory is begun."""
 
@@ -46,24 +50,22 @@ ENDS: Final = frozenset(
 
 
 def find_trajectories(
-    view: Slice, grid: Grid, fixed_points: tuple[FixedPoint, ...], count: int
+    view: Slice,
+    grid: Grid,
+    fixed_points: tuple[FixedPoint, ...],
+    separatrices: tuple[Separatrix, ...],
+    count: int,
 ) -> tuple[Trajectory, ...]:
-    """Manifolds of saddles, a path out of each source, and at most `count` through other places."""
-    times = np.linspace(0.0, _duration(view, grid, fixed_points), SAMPLES)
+    """A path out of each source, and at most `count` through places that nothing shows yet."""
+    times = np.linspace(0.0, _duration(view, grid), SAMPLES)
     ends = np.array([p.at for p in fixed_points if p.kind in ENDS]).reshape(-1, len(view.axes))
     ahead = Follower(view, times, ends)
     behind = Follower(view, -times, ends)
-    shown = [
-        *(follow(ahead, s, Course.UNSTABLE_MANIFOLD) for s in _branches(view, fixed_points, 0)),
-        *(
-            turned_round(follow(behind, s, Course.STABLE_MANIFOLD))
-            for s in _branches(view, fixed_points, -1)
-        ),
-        *(follow(ahead, start, Course.SEED) for start in _beside_sources(view, fixed_points)),
-    ]
+    shown = [follow(ahead, start, Course.SEED) for start in _beside_sources(view, fixed_points)]
+    covered = [path.points for path in (*separatrices, *shown)]
     seeds = spread(view, CANDIDATES)
     chosen = _spread_out(
-        view, shown, (coarse_paths(ahead, seeds), coarse_paths(behind, seeds)), count
+        view, covered, (coarse_paths(ahead, seeds), coarse_paths(behind, seeds)), count
     )
     for i in chosen:
         before = turned_round(follow(behind, seeds[i], Course.SEED))
@@ -71,30 +73,11 @@ def find_trajectories(
     return tuple(path for path in shown if len(path.times) > 1)
 
 
-def _duration(view: Slice, grid: Grid, fixed_points: tuple[FixedPoint, ...]) -> float:
-    """Long enough for slow places of the field, and for leaving its fixed points."""
+def _duration(view: Slice, grid: Grid) -> float:
+    """Long enough for slow places of the field."""
     speed = np.linalg.norm(grid.rates / view.width, axis=-1)
     moving = speed[np.isfinite(speed) & (speed > 0.0)]
-    slow = LONGEST / float(np.quantile(moving, 0.2)) if moving.size else 1.0
-    rates = [
-        abs(value.real)
-        for point in fixed_points
-        if point.kind is PointKind.SADDLE
-        for value in point.eigenvalues
-    ]
-    return float(max(slow, 2.0 * np.log(1.0 / BESIDE_SADDLE) / min(rates))) if rates else slow
-
-
-def _branches(view: Slice, fixed_points: tuple[FixedPoint, ...], column: int) -> list[Array]:
-    """Starts (m,) on both sides of each saddle along the eigenvector in `column`."""
-    starts: list[Array] = []
-    for point in fixed_points:
-        if point.kind is PointKind.SADDLE:
-            direction = np.array([row[column].real for row in point.vectors]) / view.width
-            nudge = BESIDE_SADDLE * direction / np.linalg.norm(direction) * view.width
-            starts += [point.at + nudge, point.at - nudge]
-    low, high = view.low, view.low + view.width
-    return [s for s in starts if np.all(view.periodic | ((s >= low) & (s <= high)))]
+    return LONGEST / float(np.quantile(moving, 0.2)) if moving.size else 1.0
 
 
 def _beside_sources(view: Slice, fixed_points: tuple[FixedPoint, ...]) -> list[Array]:
@@ -109,12 +92,12 @@ def _beside_sources(view: Slice, fixed_points: tuple[FixedPoint, ...]) -> list[A
 
 
 def _spread_out(
-    view: Slice, shown: list[Trajectory], candidates: tuple[Array, Array], count: int
+    view: Slice, shown: list[Array], candidates: tuple[Array, Array], count: int
 ) -> list[int]:
     """Candidates, one after the other, each covering the most that nothing covered before."""
     covered = np.zeros((CELLS,) * len(view.axes), dtype=bool)
-    for path in shown:
-        covered |= _cells(view, path.points)
+    for points in shown:
+        covered |= _cells(view, points)
     pairs = zip(*candidates, strict=True)
     cells = [_cells(view, np.concatenate([ahead, behind])) for ahead, behind in pairs]
     chosen: list[int] = []
