@@ -18,7 +18,7 @@ from verifier.topology.motion import moved, pace
 from verifier.topology.return_maps import Candidate, scan
 from verifier.topology.sections import Section
 from verifier.topology.shooting import SEGMENTS, TOLERANCE, Closed, closed, segments
-from verifier.topology.slices import Slice, shortest
+from verifier.topology.slices import Slice, shortest, wrapped
 
 DIRECTIONS: Final = (0.35, 2.44, 4.53)
 """Angles of the rays from a fixed point; none is along an axis, where a field is often special."""
@@ -29,8 +29,11 @@ MOST_RAYS: Final = 24
 SAME: Final = 2e-3
 """A candidate this close to a known cycle, in widths and relative period, is that one."""
 
-IDENTICAL: Final = 1e-6
-"""Two exact cycles this close are one."""
+IDENTICAL: Final = 1e-4
+"""Exact cycles this close, in widths, are one if they have one period and one stability."""
+
+PERIODS: Final = 1e-7
+"""Relative differences of the periods of one cycle that was found twice."""
 
 NEUTRAL: Final = 1e-6
 """How far the logarithm of a multiplier may be off where the field is exact."""
@@ -131,7 +134,7 @@ def _refined(view: Slice, candidates: list[Candidate], known: list[Cycle]) -> li
         cycle = _exact(view, candidate)
         if cycle is None:
             continue
-        if _twin(view, found, cycle.points[0], cycle.period, IDENTICAL) < 0:
+        if not _is_known(view, found, cycle):
             found.append(cycle)
             claimed.add((candidate.section, len(found) - 1, candidate.period > 0.0))
     return found
@@ -147,6 +150,15 @@ def _twin(view: Slice, cycles: list[Cycle], point: Array, period: float, near: f
     return -1
 
 
+def _is_known(view: Slice, cycles: list[Cycle], new: Cycle) -> bool:
+    return any(
+        abs(cycle.period - new.period) < PERIODS * new.period
+        and cycle.stability is new.stability
+        and _distance(view, cycle.points, new.points[0]) < IDENTICAL
+        for cycle in cycles
+    )
+
+
 def _distance(view: Slice, line: Array, point: Array) -> float:
     """From a point (m,) to a polyline (T, m), in widths."""
     a = shortest(view, line[:-1] - point) / view.width
@@ -157,7 +169,7 @@ def _distance(view: Slice, line: Array, point: Array) -> float:
 
 
 def _exact(view: Slice, candidate: Candidate) -> Cycle | None:
-    guess = segments(view, candidate.start, candidate.period)
+    guess = segments(view, wrapped(view, candidate.start), candidate.period)
     if not np.all(np.isfinite(guess.starts)):
         return None
     if candidate.touching:
@@ -194,6 +206,7 @@ def _drawn(view: Slice, found: Closed) -> tuple[Array, Array]:
     clock = np.linspace(0.0, duration, FINE + 1)
     paths = moved(view, found.starts, clock, TOLERANCE)[:, :-1].reshape(-1, len(view.axes))
     times = (np.arange(SEGMENTS)[:, None] * duration + clock[:-1]).ravel()
+    paths += wrapped(view, paths[0]) - paths[0]
     points = np.concatenate([paths, paths[:1] + found.turns * view.width])
     times = np.append(times, found.period)
     steps = np.linalg.norm(np.diff(points, axis=0) / view.width, axis=-1) / STRIDE

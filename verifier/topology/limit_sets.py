@@ -9,20 +9,23 @@ import numpy as np
 
 from runtime.arrays import Array
 from verifier.topology.features import FixedPoint
-from verifier.topology.motion import moved
+from verifier.topology.motion import LASTING, moved, travelled
 from verifier.topology.seeds import spread
 from verifier.topology.slices import Slice, rates_at, shortest
 
 SEEDS: Final = 24
 """Trajectories in each direction of time."""
 
-SETTLING: Final = 40.0
-"""Paces after which trajectories are near their limits."""
+SETTLED: Final = 12.0
+"""The length, in widths, after which trajectories are near their limits."""
 
-WATCHED: Final = 12.0
-"""Paces during which they must come back then."""
+LONGEST: Final = 6.0
+"""The length, in widths, within which they must come back then."""
 
-SAMPLES: Final = 1200
+SETTLING_SAMPLES: Final = 64
+
+SAMPLES: Final = 400
+"""Times at which they are looked at in each duration for which they are followed."""
 
 NEAR: Final = 0.02
 """How close to where they were, in widths, is back; at a limit they come much closer."""
@@ -41,13 +44,27 @@ def recurrences(
 ) -> list[tuple[Array, float]]:
     """Points (m,) that trajectories come back to, and after which time; negative: backwards."""
     found: list[tuple[Array, float]] = []
-    for direction in (tempo, -tempo):
-        settling = np.array([0.0, 0.5, 1.0]) * SETTLING * direction
-        ends = moved(view, spread(view, SEEDS), settling, TOLERANCE)[:, -1]
-        ends = ends[np.all(np.isfinite(ends), axis=-1)]
-        ends = _moving(view, ends, fixed_points)
-        found += _returning(view, _apart(view, ends), direction)
+    for step in (tempo, -tempo):
+        ends = _moving(view, _settled(view, step), fixed_points)
+        found += _returning(view, _apart(view, ends), step)
     return found
+
+
+def _settled(view: Slice, step: float) -> Array:
+    """Where trajectories (L, m) from everywhere are after a long way; fewer if some are lost."""
+    here, ended = spread(view, SEEDS), [np.empty((0, len(view.axes)))]
+    length = np.zeros(len(here))
+    for chunk in LASTING:
+        paths = moved(view, here, np.linspace(0.0, chunk * step, SETTLING_SAMPLES + 1), TOLERANCE)
+        done = travelled(view, paths)
+        length += done
+        there = (done > 0.0) & np.isfinite(length) & (length >= SETTLED)
+        ended.append(paths[there, -1])
+        rest = (done > 0.0) & (length < SETTLED)
+        here, length = paths[rest, -1], length[rest]
+        if not len(here):
+            break
+    return np.concatenate(ended)
 
 
 def _moving(view: Slice, points: Array, fixed_points: tuple[FixedPoint, ...]) -> Array:
@@ -67,25 +84,42 @@ def _apart(view: Slice, points: Array) -> Array:
     return np.array(kept).reshape(-1, len(view.axes))
 
 
-def _returning(view: Slice, points: Array, direction: float) -> list[tuple[Array, float]]:
+def _returning(view: Slice, points: Array, step: float) -> list[tuple[Array, float]]:
     """Which of `points` (L, m) come near themselves again, and after which time."""
     if not len(points):
         return []
-    times = np.linspace(0.0, WATCHED * direction, SAMPLES + 1)
-    paths = moved(view, points, times, TOLERANCE)
-    z = shortest(view, paths - points[:, None]) / view.width
-    normals = rates_at(view, points) / view.width * np.sign(direction)
+    normals = rates_at(view, points) / view.width * np.sign(step)
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
-    across = np.einsum("lti,li->lt", z, normals)
-    found = []
-    for lane, start in enumerate(points):
-        with np.errstate(invalid="ignore"):
-            rises = (across[lane, :-1] < 0.0) & (across[lane, 1:] >= 0.0)
-        for i in np.flatnonzero(rises):
-            a, b = across[lane, i], across[lane, i + 1]
-            part = a / (a - b)
-            gap = np.linalg.norm((1.0 - part) * z[lane, i] + part * z[lane, i + 1])
-            if gap < NEAR:
-                found.append((start, float(times[i] + part * (times[i + 1] - times[i]))))
-                break
+    found: list[tuple[Array, float]] = []
+    going, here, passed = np.arange(len(points)), points, 0.0
+    length = np.zeros(len(points))
+    for chunk in LASTING:
+        times = np.linspace(0.0, chunk * step, SAMPLES + 1)
+        paths = moved(view, here, times, TOLERANCE)
+        z = shortest(view, paths - points[going, None]) / view.width
+        back = [_first_return(one, normal) for one, normal in zip(z, normals[going], strict=True)]
+        found += [
+            (points[lane], passed + float(np.interp(at, np.arange(SAMPLES + 1), times)))
+            for lane, at in zip(going, back, strict=True)
+            if at is not None
+        ]
+        done = travelled(view, paths)
+        length += done
+        rest = np.array([at is None for at in back]) & (done > 0.0) & (length < LONGEST)
+        going, here, length = going[rest], paths[rest, -1], length[rest]
+        passed += float(times[-1])
+        if not going.size:
+            break
     return found
+
+
+def _first_return(z: Array, normal: Array) -> float | None:
+    """At which fractional sample a path z (T, m), in widths, comes back to 0 along `normal`."""
+    across = z @ normal
+    with np.errstate(invalid="ignore"):
+        rises = (across[:-1] < 0.0) & (across[1:] >= 0.0)
+    for i in np.flatnonzero(rises):
+        part = float(across[i] / (across[i] - across[i + 1]))
+        if np.linalg.norm((1.0 - part) * z[i] + part * z[i + 1]) < NEAR:
+            return float(i) + part
+    return None

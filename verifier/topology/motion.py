@@ -15,6 +15,12 @@ from verifier.topology.slices import Slice, rates_at, shortest, states_at
 MOST_STEPS: Final = 200_000
 """A path that needs more steps chatters along a jump of the field."""
 
+LASTING: Final = tuple(2.0**k for k in range(12))
+"""Durations, in paces, for which paths are followed on and on until they show what they do."""
+
+STUCK: Final = 1e-7
+"""A path that moved less than this share of the widths in such a duration has come to rest."""
+
 PROBES: Final = 256
 """Places at which the speed of a field is looked at."""
 
@@ -33,8 +39,17 @@ def moved(view: Slice, starts: Array, times: Array, tolerance: float) -> Array:
     widths[list(view.columns)] = view.width
     found = adaptive(view.flow, x, view.u, times, tolerance, tolerance * widths, MOST_STEPS)
     points = found.states[..., view.columns]
-    travelled = np.cumsum(shortest(view, np.diff(points, axis=1)), axis=1)
-    return np.asarray(np.concatenate([starts[:, None], starts[:, None] + travelled], axis=1))
+    gone = np.cumsum(shortest(view, np.diff(points, axis=1)), axis=1)
+    return np.asarray(np.concatenate([starts[:, None], starts[:, None] + gone], axis=1))
+
+
+def travelled(view: Slice, paths: Array) -> Array:
+    """The lengths (L,) of paths (L, T, m), in widths; 0 at rest, infinite if the domain is left."""
+    steps = np.linalg.norm(np.diff(paths, axis=1) / view.width, axis=-1)
+    length = steps.sum(axis=1)
+    far = np.abs(paths - paths[:, :1]) / view.width
+    rests = np.max(far, axis=(1, 2), initial=0.0) < STUCK
+    return np.asarray(np.where(np.isfinite(length), np.where(rests, 0.0, length), np.inf))
 
 
 def pace(view: Slice) -> float:

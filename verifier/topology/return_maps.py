@@ -23,7 +23,7 @@ FINER: Final = 9
 LEVELS: Final = 2
 """How often a stretch with a change of sign is looked at again; then Newton's method takes over."""
 
-TOUCHING_LEVELS: Final = 6
+TOUCHING_LEVELS: Final = 4
 """The same for a stretch in which f may touch zero."""
 
 ROUNDING: Final = 3e-8
@@ -214,10 +214,19 @@ def _touching(
                 following.append((section, float(fine.s[r, i - 1]), float(fine.s[r, i + 1])))
                 kept.append(side)
             elif heights[i] <= fine.floor[r, i]:
-                s, period = float(fine.s[r, i]), float(fine.times[r, i])
+                s = _vertex(fine.s[r], heights)
+                period = float(np.interp(s, fine.s[r], fine.times[r]))
                 found.append(_candidate(view, sections, section, s, period, touching=True))
         stretches, signs = following, kept
     return found, crossing
+
+
+def _vertex(s: Array, heights: Array) -> float:
+    """Where the parabola fitted to `heights` is least, within s."""
+    known = np.isfinite(heights)
+    middle, half = 0.5 * (s[0] + s[-1]), 0.5 * (s[-1] - s[0])
+    bend, slope, _ = np.polyfit((s[known] - middle) / half, heights[known], 2)
+    return float(middle + half * np.clip(-0.5 * slope / bend, -1.0, 1.0)) if bend else middle
 
 
 def _bends(rows: _Rows, sign: Array) -> Booleans:

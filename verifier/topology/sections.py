@@ -10,23 +10,20 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
-from verifier.topology.motion import moved
+from verifier.topology.motion import LASTING, moved, travelled
 from verifier.topology.slices import Slice, rates_at
 
 SAMPLES: Final = 256
 """Times at which a path is looked at between two looks at which paths still go on."""
 
-CHUNKS: Final = (1.0, 2.0, 4.0, 8.0, 16.0)
-"""Durations, in paces of the flow, for which paths without a return are followed further."""
+LONGEST: Final = 10.0
+"""In widths: what comes back to a section does so within this length."""
 
 CLOSER: Final = 16
 """Parts of the interval in which a return was seen, before it is interpolated."""
 
 TOLERANCE: Final = 1e-9
 """Of the integration; returns are known to about ten times this share of the widths."""
-
-STUCK: Final = 1e-6
-"""A path that moved less than this share of the widths in a chunk has come to rest."""
 
 
 @final
@@ -83,8 +80,8 @@ def first_returns(view: Slice, lanes: Lanes, step: float) -> Returns:
     sides = np.nan_to_num(np.sign(speed))
     r, times = np.full(len(starts), np.nan), np.full(len(starts), np.nan)
     going = np.flatnonzero(sides)
-    here, passed = starts[going], 0.0
-    for chunk in CHUNKS:
+    here, passed, length = starts[going], 0.0, np.zeros(going.size)
+    for chunk in LASTING:
         clock = np.linspace(0.0, chunk * step, SAMPLES + 1)
         path = moved(view, here, clock, TOLERANCE)
         level = frame.taken(going).levels(path, sides[going])
@@ -96,8 +93,11 @@ def first_returns(view: Slice, lanes: Lanes, step: float) -> Returns:
             view, frame.taken(going[back]), sides[going[back]], path[back, index[back]], clock[1]
         )
         times[going[back]] = passed + clock[index[back]] + when
-        rest = ~hit & _goes_on(view, path)
-        going, here, passed = going[rest], path[rest, -1], passed + clock[-1]
+        done = travelled(view, path)
+        length += done
+        rest = ~hit & (done > 0.0) & (length < LONGEST)
+        going, here, length = going[rest], path[rest, -1], length[rest]
+        passed += clock[-1]
         if not going.size:
             break
     return Returns(r, times, sides)
@@ -188,10 +188,3 @@ def _hermite(a: Array, b: Array, slopes: Array, theta: Array) -> tuple[Array, Ar
     cubic = slopes[0] + slopes[1] - 2.0 * (b - a)
     point = a + t * (slopes[0] + t * (quadratic + t * cubic))
     return point, slopes[0] + t * (2.0 * quadratic + 3.0 * t * cubic)
-
-
-def _goes_on(view: Slice, path: Array) -> Booleans:
-    """Whether (L,) a path is still within the domain and moved."""
-    inside = np.all(np.isfinite(path[:, -1]), axis=-1)
-    travelled = np.nanmax(np.abs(path - path[:, :1]) / view.width, axis=(1, 2), initial=0.0)
-    return np.asarray(inside & (travelled > STUCK))
