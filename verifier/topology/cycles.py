@@ -14,6 +14,7 @@ from runtime.arrays import Array, frozen
 from verifier.topology.features import Cycle, FixedPoint, PointKind, Stability
 from verifier.topology.floquet import multipliers, stability
 from verifier.topology.limit_sets import recurrences
+from verifier.topology.map_cycles import find_map_cycles
 from verifier.topology.motion import moved, pace
 from verifier.topology.return_maps import Candidate, scan
 from verifier.topology.sections import Section
@@ -64,7 +65,7 @@ def find_cycles(
 ) -> tuple[tuple[Cycle, ...], tuple[str, ...]]:
     """The cycles, the shortest period first, and notes on what they do not tell."""
     if view.is_map:
-        return (), ()
+        return find_map_cycles(view)
     tempo = pace(view)
     if not np.isfinite(tempo):
         return (), ()

@@ -23,7 +23,7 @@ FINER: Final = 9
 LEVELS: Final = 2
 """How often a stretch with a change of sign is looked at again; then Newton's method takes over."""
 
-TOUCHING_LEVELS: Final = 4
+TOUCHING_LEVELS: Final = 5
 """The same for a stretch in which f may touch zero."""
 
 ROUNDING: Final = 3e-8
@@ -213,20 +213,22 @@ def _touching(
             elif level < TOUCHING_LEVELS - 1:
                 following.append((section, float(fine.s[r, i - 1]), float(fine.s[r, i + 1])))
                 kept.append(side)
-            elif heights[i] <= fine.floor[r, i]:
-                s = _vertex(fine.s[r], heights)
-                period = float(np.interp(s, fine.s[r], fine.times[r]))
-                found.append(_candidate(view, sections, section, s, period, touching=True))
+            else:
+                s, height = _vertex(fine.s[r], heights)
+                if abs(height) <= fine.floor[r, i]:
+                    period = float(np.interp(s, fine.s[r], fine.times[r]))
+                    found.append(_candidate(view, sections, section, s, period, touching=True))
         stretches, signs = following, kept
     return found, crossing
 
 
-def _vertex(s: Array, heights: Array) -> float:
-    """Where the parabola fitted to `heights` is least, within s."""
+def _vertex(s: Array, heights: Array) -> tuple[float, float]:
+    """Where the parabola fitted to `heights` is least, within s, and how high it is there."""
     known = np.isfinite(heights)
     middle, half = 0.5 * (s[0] + s[-1]), 0.5 * (s[-1] - s[0])
-    bend, slope, _ = np.polyfit((s[known] - middle) / half, heights[known], 2)
-    return float(middle + half * np.clip(-0.5 * slope / bend, -1.0, 1.0)) if bend else middle
+    parabola = np.polyfit((s[known] - middle) / half, heights[known], 2)
+    place = np.clip(-0.5 * parabola[1] / max(parabola[0], 1e-300), -1.0, 1.0)
+    return float(middle + half * place), float(np.polyval(parabola, place))
 
 
 def _bends(rows: _Rows, sign: Array) -> Booleans:
