@@ -1,6 +1,6 @@
 """Basins: which attractor each place of a slice goes to.
 
-m: number of axes; L: lanes, one for each cell.
+m: number of axes; L: lanes, one for each cell. Distances are shares of the axes' widths.
 """
 
 from collections.abc import Sequence
@@ -10,17 +10,13 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers, frozen
-from runtime.integrators import ENDINGS, adaptive
+from runtime.integrators import ENDINGS, adaptive, fixed_steps
 from runtime.rollout import Ending
-from verifier.topology.capture import STABLE, beside, trapped, traps_of, tubes_of
-from verifier.topology.features import (
-    Attractor,
-    Basins,
-    Cycle,
-    FixedPoint,
-)
+from verifier.topology.capture import STABLE, Trap, traps_of, tubes_of
+from verifier.topology.features import Attractor, Basins, Cycle, FixedPoint, PointKind
 from verifier.topology.motion import pace
-from verifier.topology.slices import Slice, states_at, wrapped
+from verifier.topology.slices import Slice, shortest, states_at, wrapped
+from verifier.topology.tubes import Tube, gaps_to
 
 LEAVES: Final = -1
 OPEN: Final = -2
@@ -32,30 +28,49 @@ TOLERANCE: Final = 1e-6
 """The local error of a step, as a share of the widths and relative to the state."""
 
 MOST_STEPS: Final = 3_000
-"""A lane that needs more steps in one look chatters along a jump of the field."""
-
-FIRST_LOOK: Final = 1.0
-"""After how many typical crossings of the domain lanes are looked at first; then less often."""
+"""A lane that needs more steps until the next look chatters along a jump of the field."""
 
 GROWTH: Final = 1.4
+"""Looks get rarer: the first is after one typical crossing of the domain."""
 
 LOOKS: Final = 14
 """How often lanes are looked at before those that came to no end are left open."""
 
-STEPS: Final = 4_000
-"""Steps of a map before its lanes are left open."""
+STEPS: Final = 40
+"""Steps of a map between two looks."""
+
+CLOSER: Final = 0.95
+"""What converges is closer by this factor at the next look."""
+
+ON_IT: Final = 0.25
+"""So close to a stable cycle, as a share of a tube's reach, a lane need not come closer."""
 
 CLOSE: Final = 0.02
-"""A lane that still comes closer at the end converges to a point or cycle that is this close."""
+"""A lane that still comes closer at the end converges to a degenerate point this close."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What lanes may come to; `certain` if it attracts all that is near."""
+
+    is_cycle: bool
+    index: int
+    certain: bool
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Lanes:
-    """Where lanes are: `at` (L, m), NaN after the domain was left, and `gone` (L,) if it was."""
+    """Lanes on the way: which of all they are (L,), where they are and were before, (L, m)."""
 
+    number: Integers
     at: Array
-    gone: Booleans
+    before: Array
+
+    def some(self, chosen: Booleans) -> "Lanes":
+        """Only those of `chosen` (L,)."""
+        return Lanes(self.number[chosen], self.at[chosen], self.before[chosen])
 
 
 def find_basins(
@@ -63,36 +78,43 @@ def find_basins(
 ) -> Basins | None:
     """The attractor of the centre of each of `cells` per axis; None where nothing attracts.
 
-    A place has reached a fixed point once it is in its trap (see `capture`), a cycle once it is
-    close to it at two looks, one after the other. What came to no end within the time is open:
-    places on a separatrix, round a center, on the way to something that nobody listed.
+    A place has reached a fixed point once it is in one of its traps (see `capture`), a cycle once
+    it is close to it at two looks and comes closer. Listed are all stable points and cycles, and
+    half-stable ones that some place goes to. What came to no end in the time is open: on a
+    separatrix, round a center, on the way to something that is not listed.
     """
-    ends = _attracting(fixed_points, cycles)
-    if not ends or cells < 1:
+    if cells < 1 or not (fixed_points or cycles):
+        return None
+    traps = traps_of(view, fixed_points, cycles, 1)
+    tubes = tubes_of(view, fixed_points, cycles, 1)
+    goals = _goals(fixed_points, cycles, traps, tubes)
+    if not goals:
         return None
     centres = _centres(view, min(cells, MOST_CELLS[len(view.axes)]))
-    starts = np.stack(np.meshgrid(*centres, indexing="ij"), axis=-1)
-    labels = _labels(view, fixed_points, cycles, ends, starts.reshape(-1, len(view.axes)))
-    return Basins(
-        centres=centres,
-        labels=labels.reshape(starts.shape[:-1]),
-        attractors=tuple(
-            Attractor(is_cycle, index, float(np.mean(labels == k)))
-            for k, (is_cycle, index) in enumerate(ends)
-        ),
-        leaves=float(np.mean(labels == LEAVES)),
-        open=float(np.mean(labels == OPEN)),
-    )
+    starts = np.stack(np.meshgrid(*centres, indexing="ij"), axis=-1).reshape(-1, len(view.axes))
+    labels, lanes = _followed(view, goals, traps, tubes, starts)
+    _label_converging(view, goals, fixed_points, labels, lanes)
+    return _basins(goals, centres, labels)
 
 
-def _attracting(
-    fixed_points: Sequence[FixedPoint], cycles: Sequence[Cycle]
-) -> tuple[tuple[bool, int], ...]:
-    """The attractors, as (is a cycle, index); first the fixed points."""
-    return (
-        *((False, i) for i, point in enumerate(fixed_points) if point.kind in STABLE),
-        *((True, i) for i, cycle in enumerate(cycles) if cycle.is_attracting),
-    )
+def _goals(
+    fixed_points: Sequence[FixedPoint],
+    cycles: Sequence[Cycle],
+    traps: Sequence[Trap],
+    tubes: Sequence[Tube],
+) -> tuple[Goal, ...]:
+    """Points first, then cycles, in their order."""
+    trapping = {trap.index for trap in traps}
+    points = [
+        Goal(is_cycle=False, index=i, certain=point.kind in STABLE)
+        for i, point in enumerate(fixed_points)
+        if point.kind in STABLE or point.kind is PointKind.DEGENERATE or i in trapping
+    ]
+    closed = [
+        Goal(is_cycle=True, index=tube.index, certain=cycles[tube.index].is_attracting)
+        for tube in tubes
+    ]
+    return (*points, *closed)
 
 
 def _centres(view: Slice, count: int) -> tuple[Array, ...]:
@@ -100,48 +122,91 @@ def _centres(view: Slice, count: int) -> tuple[Array, ...]:
     return tuple(frozen(axis.low + shares * axis.width) for axis in view.axes)
 
 
-def _labels(
+def _followed(
     view: Slice,
-    fixed_points: Sequence[FixedPoint],
-    cycles: Sequence[Cycle],
-    ends: tuple[tuple[bool, int], ...],
+    goals: Sequence[Goal],
+    traps: Sequence[Trap],
+    tubes: Sequence[Tube],
     starts: Array,
-) -> Integers:
-    """For each of `starts` (L, m) the index into `ends`, `LEAVES` or `OPEN`."""
-    number = {end: k for k, end in enumerate(ends)}
-    traps = traps_of(view, fixed_points, cycles, 1)
-    tubes = [
-        tube for tube in tubes_of(view, fixed_points, cycles, 1) if (True, tube.index) in number
-    ]
+) -> tuple[Integers, Lanes]:
+    """For each of `starts` the index of its goal, `LEAVES` or `OPEN`; the lanes that are open."""
     labels = np.full(len(starts), OPEN)
-    beside_before = np.full(len(starts), OPEN)
-    lanes, at = np.arange(len(starts)), starts
-    duration = FIRST_LOOK * pace(view)
+    points = {goal.index: k for k, goal in enumerate(goals) if not goal.is_cycle}
+    closed = {goal.index: k for k, goal in enumerate(goals) if goal.is_cycle}
+    lanes = Lanes(np.arange(len(starts)), starts, np.full_like(starts, np.nan))
+    typical = 0.0 if view.is_map else pace(view)
     for look in range(LOOKS + 1):
         for trap in traps:
-            labels[lanes[trapped(view, trap, at)]] = number[False, trap.index]
+            labels[lanes.number[trap.holds(view, lanes.at)]] = points[trap.index]
         for tube in tubes:
-            k = number[True, tube.index]
-            near = lanes[beside(view, tube, at)]
-            labels[near[beside_before[near] == k]] = k
-            beside_before[near] = k
-        lanes, at = lanes[labels[lanes] == OPEN], at[labels[lanes] == OPEN]
-        if not lanes.size or look == LOOKS:
+            k = closed[tube.index]
+            labels[lanes.number[_settled(view, tube, lanes, certain=goals[k].certain)]] = k
+        lanes = lanes.some(labels[lanes.number] == OPEN)
+        if not lanes.number.size or look == LOOKS:
             break
-        moved = _moved(view, at, duration)
-        labels[lanes[moved.gone]] = LEAVES
-        known = np.all(np.isfinite(moved.at), axis=-1)
-        lanes, at = lanes[known], moved.at[known]
-        duration *= GROWTH
-    return labels
+        at, gone = _moved(view, lanes.at, typical * GROWTH**look)
+        labels[lanes.number[gone]] = LEAVES
+        lanes = Lanes(lanes.number, at, lanes.at).some(np.all(np.isfinite(at), axis=-1))
+    return labels, lanes
 
 
-def _moved(view: Slice, starts: Array, duration: float) -> Lanes:
-    """Where `starts` (L, m) are after some time."""
+def _settled(view: Slice, tube: Tube, lanes: Lanes, *, certain: bool) -> Booleans:
+    """Which lanes (L,) are close to the cycle now, were before, and have come closer."""
+    settled = gaps_to(view, tube, lanes.at) <= tube.reach
+    near = np.flatnonzero(settled)
+    now, before = (gaps_to(view, tube, at[near]) for at in (lanes.at, lanes.before))
+    closer = now <= CLOSER * before
+    if certain:
+        closer |= now <= ON_IT * tube.reach
+    settled[near] = closer & (before <= tube.reach)
+    return settled
+
+
+def _moved(view: Slice, starts: Array, duration: float) -> tuple[Array, Booleans]:
+    """Where `starts` (L, m) are after the duration, or after some steps; which left the domain."""
     x = states_at(view, starts)
-    atol = np.full(x.shape[-1], TOLERANCE)
-    atol[list(view.columns)] *= view.width
-    times = np.array([0.0, duration])
-    found = adaptive(view.flow, x, view.u, times, TOLERANCE, atol, MOST_STEPS)
+    n, p = x.shape[-1], view.u.size
+    if view.is_map:
+        times = view.program.field.every * np.arange(STEPS + 1.0)
+        found = fixed_steps(view.flow, x, times, view.u[None, None], np.arange(n, n + p))
+    else:
+        atol = np.full(n, TOLERANCE)
+        atol[list(view.columns)] *= view.width
+        times = np.array([0.0, duration])
+        found = adaptive(view.flow, x, view.u, times, TOLERANCE, atol, MOST_STEPS)
     at = wrapped(view, found.states[:, -1, view.columns])
-    return Lanes(at, found.endings == ENDINGS.index(Ending.LEFT_DOMAIN))
+    return at, np.asarray(found.endings == ENDINGS.index(Ending.LEFT_DOMAIN))
+
+
+def _label_converging(
+    view: Slice,
+    goals: Sequence[Goal],
+    fixed_points: Sequence[FixedPoint],
+    labels: Integers,
+    lanes: Lanes,
+) -> None:
+    """Label what slowly comes closer to a degenerate point, as near x' = -x³ or x' = x²."""
+    for k, goal in enumerate(goals):
+        if not goal.is_cycle and fixed_points[goal.index].kind is PointKind.DEGENERATE:
+            place = fixed_points[goal.index].at
+            now, before = (
+                np.linalg.norm(shortest(view, at - place) / view.width, axis=-1)
+                for at in (lanes.at, lanes.before)
+            )
+            labels[lanes.number[(now < CLOSE) & (now <= CLOSER * before)]] = k
+
+
+def _basins(goals: Sequence[Goal], centres: tuple[Array, ...], labels: Integers) -> Basins:
+    """The goals that attract, numbered anew, with their shares."""
+    shares = [float(np.mean(labels == k)) for k in range(len(goals))]
+    kept = [k for k, goal in enumerate(goals) if goal.certain or shares[k] > 0.0]
+    number = np.full(len(goals) + 2, OPEN)
+    number[kept] = np.arange(len(kept))
+    number[LEAVES] = LEAVES
+    return Basins(
+        centres=centres,
+        labels=number[labels].reshape([len(axis) for axis in centres]),
+        attractors=tuple(Attractor(goals[k].is_cycle, goals[k].index, shares[k]) for k in kept),
+        leaves=float(np.mean(labels == LEAVES)),
+        open=float(np.mean(labels == OPEN)),
+    )

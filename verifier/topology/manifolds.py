@@ -13,11 +13,12 @@ import numpy as np
 from runtime.arrays import Array, Booleans, frozen
 from runtime.integrators import adaptive
 from runtime.rollout import Ending
-from verifier.topology.capture import Trap, Tube, beside, trapped, traps_of, tubes_of
+from verifier.topology.capture import Trap, traps_of, tubes_of
 from verifier.topology.features import Cycle, FixedPoint, Reaches, Separatrix
 from verifier.topology.local_manifolds import Branch, branches_of, growths, is_saddle
 from verifier.topology.map_manifolds import map_separatrices
 from verifier.topology.slices import Slice, shortest, states_at
+from verifier.topology.tubes import Tube, gaps_to
 
 TOLERANCE: Final = 1e-10
 """The local error of a step, as a share of the widths and relative to the state."""
@@ -215,9 +216,11 @@ def _first_end(
     """What the branch comes to first within this stretch, None where nothing."""
     found: list[End] = []
     for trap in ends.traps:
-        found += _at_first(trapped(view, trap, piece.points), Reaches.POINT, trap.index)
+        found += _at_first(trap.holds(view, piece.points), Reaches.POINT, trap.index)
     for tube in ends.tubes:
-        found += _at_first(beside(view, tube, piece.points), Reaches.CYCLE, tube.index)
+        found += _at_first(
+            gaps_to(view, tube, piece.points) <= tube.reach, Reaches.CYCLE, tube.index
+        )
     for target in ends.targets:
         own = target.index == branch.saddle
         reached = _passes(view, target, piece.points)
