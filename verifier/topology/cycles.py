@@ -187,7 +187,8 @@ def _cycle(view: Slice, found: Closed, *, touching: bool) -> Cycle | None:
     if not np.all(np.isfinite(points)) or not np.all(np.isfinite(values)):
         return None
     error = float(np.max(view.accuracy / view.width)) * found.period
-    kind = Stability.SEMI_STABLE if touching else stability(values, NEUTRAL + error)
+    trusted = second if doubtful and np.all(np.isfinite(second)) else values
+    kind = Stability.SEMI_STABLE if touching else stability(trusted, NEUTRAL + error)
     return Cycle(
         times=frozen(times),
         points=frozen(points),

@@ -41,6 +41,9 @@ SETTLING: Final = 512
 NUDGE: Final = 1e-6
 """How far starts are displaced, in widths, where F^k is differentiated by differences."""
 
+LEAST_DAMPING: Final = 1e-13
+"""Beside the size of the squared derivative: keeps singular systems solvable."""
+
 NEUTRAL: Final = 1e-6
 
 CONTINUUM: Final = "orbits close in a whole stretch of the slice: these are not listed as cycles"
@@ -60,11 +63,11 @@ def find_map_cycles(view: Slice) -> tuple[tuple[Cycle, ...], tuple[str, ...]]:
             continue
         starts = np.concatenate([_starts(view, nodes, images), settled])
         orbits = _orbits(view, starts, k)
-        if len(orbits) > MOST:
-            notes.append(CROWD)
         cycles = [_cycle(view, orbit) for orbit in orbits[:MOST]]
         if any(cycle.stability is Stability.NEUTRAL for cycle in cycles):
             notes.append(CONTINUUM)
+        elif len(orbits) > MOST:
+            notes.append(CROWD)
         found += [cycle for cycle in cycles if cycle.stability is not Stability.NEUTRAL]
     return tuple(found), tuple(dict.fromkeys(notes))
 
@@ -156,7 +159,11 @@ def _matrices(view: Slice, path: Array) -> Array:
 def _newton_step(view: Slice, points: Array, gap: Array, k: int) -> Array:
     """Steps (L, m), in widths, that close the linearised gaps; at most a tenth of the domain."""
     J = np.nan_to_num(_matrices(view, _path(view, points, k))) - np.eye(points.shape[-1])
-    step = -(np.linalg.pinv(J) @ np.nan_to_num(gap)[..., None])[..., 0]
+    transposed = np.swapaxes(J, -1, -2)
+    normal = transposed @ J
+    slack = LEAST_DAMPING * (1.0 + np.trace(normal, axis1=-2, axis2=-1))[:, None, None]
+    downhill = transposed @ np.nan_to_num(gap)[..., None]
+    step = -np.linalg.solve(normal + slack * np.eye(points.shape[-1]), downhill)[..., 0]
     size = np.linalg.norm(step, axis=-1, keepdims=True)
     return np.asarray(step * np.minimum(1.0, 0.1 / np.maximum(size, 1e-300)))
 

@@ -12,7 +12,7 @@ from runtime.integrators import adaptive
 from verifier.topology.seeds import spread
 from verifier.topology.slices import Slice, rates_at, shortest, states_at
 
-MOST_STEPS: Final = 200_000
+MOST_STEPS: Final = 10_000
 """A path that needs more steps chatters along a jump of the field."""
 
 LASTING: Final = tuple(2.0**k for k in range(12))
