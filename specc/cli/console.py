@@ -39,6 +39,14 @@ def print_text(text: str) -> None:
     results().print(Text(text))
 
 
+def print_styled(text: str, phrase: str, style: str) -> None:
+    """A result for people, with one phrase of it in a style."""
+    shown = Text(text)
+    start = text.find(phrase)
+    shown.stylize(style, start, start + len(phrase))
+    results().print(shown)
+
+
 def show_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
     """Diagnostics in file order, with a last line that counts them, on standard error."""
     found = in_file_order(diagnostics)

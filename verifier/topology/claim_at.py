@@ -154,8 +154,11 @@ def _sentence(claim: Claim, seen: Portrait, found: tuple[Member, ...], outcome: 
     sure = [member for member in found if member.fit is Fit.YES]
     near = [member for member in found if member.of_type is not Fit.NO and member.why]
     perhaps = [member for member in found if member.fit is Fit.MAYBE]
-    shown = "; ".join(_described(seen, member, claim.feature) for member in sure[:3])
-    text = counted(claim, len(sure)) + (f": {shown}" if sure else "")
+    shown = [_described(seen, member, claim.feature) for member in sure[:3]]
+    alone = len(sure) == 1 and shown[0].startswith(("at ", "with "))
+    text = counted(claim, len(sure)) + (
+        f"{' ' if alone else ': '}{'; '.join(shown)}" if sure else ""
+    )
     if outcome is Outcome.HOLDS:
         return text
     text = f"{wanted(claim)}, found {text}"

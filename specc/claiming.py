@@ -1,0 +1,27 @@
+"""The claims of a spec, put to the judge."""
+
+from pathlib import Path
+
+from compiler.lower_field import Progress
+from runtime.program import Program
+from specc.loading import load_program
+from verifier.topology.claims import judge
+from verifier.topology.findings import Finding
+
+
+def _in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""
+
+
+def check_claims(
+    spec: Program | Path | str, progress: Progress = _in_silence
+) -> tuple[Finding, ...]:
+    """What is found of each claim under `expect:`: proved, holds, refuted or undecided.
+
+    `progress(what, done, of)` is called before each claim.
+
+    Raises:
+        SpecError: the spec is wrong, or the artifact is damaged.
+    """
+    program = spec if isinstance(spec, Program) else load_program(spec)
+    return judge(program, None, progress)
