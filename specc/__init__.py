@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from runtime.rollout import Rollout as Rollout
     from spec_schema.diagnostics import Diagnostic as Diagnostic
     from spec_schema.diagnostics import SpecError as SpecError
+    from specc.claiming import check_claims as check_claims
     from specc.drawn import draw as draw
     from specc.loading import compile_spec as compile_spec
     from specc.loading import load_program as load_program
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
     from verifier.topology.features import Portrait as Portrait
+    from verifier.topology.findings import Finding as Finding
 
 __version__ = "0.1.0"
 
@@ -37,6 +39,7 @@ HOMES = {
     "SpecError": "spec_schema.diagnostics",
     "Verification": "specc.verifying",
     "check": "compiler.check",
+    "check_claims": "specc.claiming",
     "compile_spec": "specc.loading",
     "dump": "compiler.dump",
     "load_program": "specc.loading",
@@ -50,6 +53,7 @@ HOMES = {
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
     "Portrait": "verifier.topology.features",
+    "Finding": "verifier.topology.findings",
 }
 """Where each public name is at home."""
 

@@ -53,6 +53,10 @@ def compile_summary(program: Program) -> str:
             f"  {name}: off by at most {bound.measured / scale:.2e} {unit} "
             f"(allowed {bound.tolerance / scale:.2e}; measured on {bound.points:,} points)"
         )
+    written = sum(not claim.sketched for claim in program.claims)
+    if written:
+        claims = f"{written} claim{'' if written == 1 else 's'}"
+        lines.append(f"  {claims} not checked: run `specc check --claims {program.source.file}`")
     return "\n".join(lines)
 
 
