@@ -88,7 +88,8 @@ def integrate(
     seen = solve_ivp(
         rates, (0.0, longest), start, "DOP853", events=crossing, rtol=1e-11, atol=1e-12
     )
-    assert seen.t_events is not None and seen.y_events is not None, "events were asked for"
+    assert seen.t_events is not None
+    assert seen.y_events is not None
     times, states = np.array(seen.t_events[0]), np.array(seen.y_events[0])
     rising = np.array([level is not float or rates(0.0, y)[watched] > 0.0 for y in states])
     return np.array(seen.y[:, -1]), (times[rising.astype(bool)], states[rising.astype(bool)])
@@ -296,7 +297,7 @@ def test_roesslers_cycle_turns_over_and_keeps_its_volume_law() -> None:
     def rates(_t: float, y: Array) -> list[float]:
         return [-y[1] - y[2], y[0] + 0.2 * y[1], 0.2 + y[2] * (y[0] - 2.5), 0.2 + y[0] - 2.5]
 
-    start = integrate(rates, [1.0, 1.0, 1.0, 0.0], 250.0)[0]
+    start = integrate(rates, [1.0, 1.0, 1.0, 0.0], 450.0)[0]
     times, states = integrate(rates, start, 20.0, 1)[1]
     volume = float(states[1, 3] - states[0, 3])
 

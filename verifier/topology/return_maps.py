@@ -29,6 +29,9 @@ TOUCHING_LEVELS: Final = 5
 ROUNDING: Final = 3e-8
 """What f may be off where the field is exact."""
 
+NOISE: Final = 0.1
+"""A change of sign between values below this share of what can't be told from 0 says nothing."""
+
 CONTINUUM: Final = 0.12
 """The share of a section on which every trajectory must close before they count as a continuum."""
 
@@ -122,7 +125,7 @@ def _changes(rows: _Rows) -> Booleans:
     a, b = rows.f[:, :-1], rows.f[:, 1:]
     with np.errstate(invalid="ignore"):
         change = ((a < 0.0) != (b < 0.0)) & (np.abs(a - b) < 0.5)
-    known = np.isfinite(a) & np.isfinite(b)
+        known = np.maximum(np.abs(a), np.abs(b)) > NOISE * rows.floor[:, 1:]
     return np.asarray(change & known & (rows.sides[:, :-1] == rows.sides[:, 1:]))
 
 
