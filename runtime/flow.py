@@ -59,7 +59,7 @@ def flow_of(program: Program, source: Source = Source.TABLES) -> Flow:
     Raises:
         ValueError: the field has no formula, and `source` asks for it.
     """
-    results = tuple(_rate(program, index, source) for index in range(len(program.states)))
+    results = tuple(rate_of(program, index, source) for index in range(len(program.states)))
     return Flow(
         program=program,
         tape=pack(results, program.register, program.field.tables, program.field.coordinates),
@@ -138,7 +138,12 @@ def _results(flow: Flow, x: Array, u: Array) -> Array:
     return np.where(inside[..., np.newaxis], results, np.nan)
 
 
-def _rate(program: Program, index: int, source: Source) -> Code | Sum:
+def rate_of(program: Program, index: int, source: Source) -> Code | Sum:
+    """What gives the rate (of a map: the next value) of state `index`.
+
+    Raises:
+        ValueError: the field has no formula, and `source` asks for it.
+    """
     state = program.states[index]
     field = program.field
     still = Code(state.name) if field.is_map else Code("0")

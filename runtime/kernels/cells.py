@@ -1,0 +1,302 @@
+"""Bounds of a table over boxes, compiled.
+
+A box is cut at the cells that it touches. On each, the B-spline coefficients are turned into the
+Bernstein coefficients of the sub-box by the blossom (Ramshaw 1989), and the polynomial lies between
+the smallest and the largest of them. d: axes; m: columns; u: coordinate in cells; t: position in a
+cell.
+
+Rounding. Every weight is a sum of products of at most three factors that are not negative while
+0 <= t <= 1; each factor is computed to 2 roundings, so the weights of one row are together off by
+less than 16 eps/2 of their absolute sum, and a sum of four products adds 4 eps/2. After d axes the
+error is below `d * ROUNDINGS * eps` times the product of the absolute row sums times the largest
+coefficient of the cell; eps = 2**-52. It is added outward. Beyond the table's edge weights may be
+negative; the absolute row sums then say how much an error grows.
+"""
+# ruff: noqa: FBT001 - kernels take arguments by place
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans, Integers
+from runtime.kernels.cache import kernel, part
+
+ROUNDINGS = 16.0
+EPSILON = 2.0**-52
+MANY = 16
+"""A box that touches more cells than 4 per axis or this many is bounded by its coefficients."""
+
+
+@part
+def _blossom(t1: float, t2: float, w: Array) -> None:
+    """Weights w (3,) of a quadratic piece's coefficients in its blossom at t1, t2."""
+    a, b = 1.0 - t2, t2
+    w[0] = a * (1.0 - t1) * 0.5
+    w[1] = a * (t1 + 1.0) * 0.5 + b * (2.0 - t1) * 0.5
+    w[2] = b * t1 * 0.5
+
+
+@part
+def _weigh(cubic: bool, slope: bool, t0: float, t1: float, w: Array) -> tuple[int, float]:
+    """Rows of weights w (4, 4) from coefficients to Bernstein coefficients on [t0, t1].
+
+    Returns how many rows, and their largest absolute sum.
+    """
+    if not cubic:
+        if slope:
+            w[0, 0], w[0, 1] = -1.0, 1.0
+            return 1, 2.0
+        w[0, 0], w[0, 1] = 1.0 - t0, t0
+        w[1, 0], w[1, 1] = 1.0 - t1, t1
+        return 2, max(abs(1.0 - t0) + abs(t0), abs(1.0 - t1) + abs(t1))
+    inner = np.empty(3)
+    rows = 3 if slope else 4
+    largest = 0.0
+    for row in range(rows):
+        first = t1 if row > 0 else t0
+        second = t1 if row > 1 else t0
+        third = t1 if row > 2 else t0
+        _blossom(first, second, inner)
+        if slope:
+            w[row, 0] = -inner[0]
+            w[row, 1] = inner[0] - inner[1]
+            w[row, 2] = inner[1] - inner[2]
+            w[row, 3] = inner[2]
+            size = 2.0 * (abs(inner[0]) + abs(inner[1]) + abs(inner[2]))
+        else:
+            w[row, 0] = inner[0] * (1.0 - third) / 3.0
+            w[row, 1] = inner[0] * (third + 2.0) / 3.0 + inner[1] * (2.0 - third) / 3.0
+            w[row, 2] = inner[1] * (third + 1.0) / 3.0 + inner[2] * (3.0 - third) / 3.0
+            w[row, 3] = inner[2] * third / 3.0
+            size = abs(w[row, 0]) + abs(w[row, 1]) + abs(w[row, 2]) + abs(w[row, 3])
+        largest = max(largest, size)
+    return rows, largest
+
+
+@part
+def _contract(
+    cubic: bool, slope: int, d: int, m: int, t: Array, source: Array, work: Array, w: Array
+) -> tuple[int, float, int]:
+    """Weigh all axes of source (taps ** d * m); the result stands in a half of `work` (2, size).
+
+    Returns which half, the growth of errors, and how many Bernstein coefficients a column has.
+    """
+    taps = 4 if cubic else 2
+    half, before, growth = 0, 1, 1.0
+    after = m
+    for _ in range(d):
+        after *= taps
+    work[0, :after] = source[:after]
+    for a in range(d):
+        after //= taps
+        rows, size = _weigh(cubic, a == slope, t[a, 0], t[a, 1], w)
+        growth *= size
+        for o in range(before):
+            for r in range(rows):
+                into = (o * rows + r) * after
+                for i in range(after):
+                    total = 0.0
+                    for k in range(taps):
+                        total += w[r, k] * work[half, (o * taps + k) * after + i]
+                    work[1 - half, into + i] = total
+        before *= rows
+        half = 1 - half
+    return half, growth, before
+
+
+@part
+def _span(
+    cells: int, wraps: bool, low: float, high: float
+) -> tuple[int, int, float]:
+    """The first and the last cell that [low, high] touches, and how far it sticks out of all."""
+    first, last = int(np.floor(low)), int(np.ceil(high)) - 1
+    last = max(first, last)
+    if wraps:
+        return first, min(last, first + cells - 1), 0.0
+    beyond = max(0.0, max(-low, high - cells))
+    return min(max(first, 0), cells - 1), min(max(last, 0), cells - 1), beyond
+
+
+@part
+def _gather(
+    taps: int,
+    counts: Integers,
+    wraps: Booleans,
+    m: int,
+    coefficients: Array,
+    cell: Integers,
+    out: Array,
+) -> float:
+    """Copy the coefficients of a cell to `out`; the largest of their sizes."""
+    d = len(counts)
+    total = 1
+    for _ in range(d):
+        total *= taps
+    largest = 0.0
+    for flat in range(total):
+        rest, place, stride = flat, 0, m
+        for back in range(d):
+            a = d - 1 - back
+            i = cell[a] % (counts[a] - taps + 1) if wraps[a] else cell[a]
+            place += (i + rest % taps) * stride
+            rest //= taps
+            stride *= counts[a]
+        for k in range(m):
+            value = coefficients[place + k]
+            out[flat * m + k] = value
+            largest = max(largest, abs(value))
+    return largest
+
+
+@part
+def _sub_box(
+    d: int, taps: int, counts: Integers, wraps: Booleans, cell: Integers, low: Array, high: Array,
+    t: Array,
+) -> None:
+    """The part of the box in one cell, t (d, 2); end cells go on beyond the edge."""
+    for a in range(d):
+        t0, t1 = low[a] - cell[a], high[a] - cell[a]
+        if wraps[a]:  # the differences may be rounded where the coordinate is negative
+            t0, t1 = t0 - EPSILON, t1 + EPSILON
+        top = counts[a] - taps
+        if wraps[a] or cell[a] > 0:
+            t0 = max(t0, 0.0)
+        if wraps[a] or cell[a] < top:
+            t1 = min(t1, 1.0)
+        t[a, 0], t[a, 1] = min(t0, t1), max(t0, t1)
+
+
+@part
+def _by_cells(
+    cubic: bool,
+    counts: Integers,
+    wraps: Booleans,
+    m: int,
+    slopes: int,
+    coefficients: Array,
+    spans: Integers,
+    low: Array,
+    high: Array,
+    taken: Array,
+    work: Array,
+    lower: Array,
+    upper: Array,
+) -> None:
+    """Hull of the Bernstein coefficients of all cells; lower, upper (m, 1 + slopes)."""
+    d, taps = len(counts), 4 if cubic else 2
+    cell, t, w = spans[:, 0].copy(), np.empty((d, 2)), np.empty((4, 4))
+    while True:
+        largest = _gather(taps, counts, wraps, m, coefficients, cell, taken)
+        _sub_box(d, taps, counts, wraps, cell, low, high, t)
+        for s in range(1 + slopes):
+            half, growth, size = _contract(cubic, s - 1, d, m, t, taken, work, w)
+            error = d * ROUNDINGS * EPSILON * growth * largest
+            for k in range(m):
+                for i in range(size):
+                    value = work[half, i * m + k]
+                    lower[k, s] = min(lower[k, s], value - error)
+                    upper[k, s] = max(upper[k, s], value + error)
+        a = d - 1
+        while a >= 0 and cell[a] == spans[a, 1]:
+            cell[a] = spans[a, 0]
+            a -= 1
+        if a < 0:
+            return
+        cell[a] += 1
+
+
+@part
+def _by_coefficients(
+    cubic: bool,
+    counts: Integers,
+    wraps: Booleans,
+    m: int,
+    slopes: int,
+    coefficients: Array,
+    spans: Integers,
+    beyond: float,
+    lower: Array,
+    upper: Array,
+) -> None:
+    """Hull of the coefficients that the box sees: weights are not negative and sum to 1.
+
+    Beyond the edge by b cells, a step of de Boor's recursion has weights of the absolute sum
+    1 + 2 b at most, which widens the hull about its middle.
+    """
+    d, taps = len(counts), 4 if cubic else 2
+    at = spans[:, 0].copy()
+    place = np.empty(d, dtype=np.int64)
+    while True:
+        base = 0
+        for a in range(d):
+            place[a] = at[a] % (counts[a] - taps + 1) if wraps[a] else at[a]
+            base = base * counts[a] + place[a]
+        for k in range(m):
+            value = coefficients[base * m + k]
+            lower[k, 0] = min(lower[k, 0], value)
+            upper[k, 0] = max(upper[k, 0], value)
+            stride = m
+            for back in range(slopes):
+                a = d - 1 - back
+                if at[a] < spans[a, 1] + taps - 1:
+                    rise = coefficients[base * m + k + stride] - value
+                    error = EPSILON * abs(rise)
+                    lower[k, 1 + a] = min(lower[k, 1 + a], rise - error)
+                    upper[k, 1 + a] = max(upper[k, 1 + a], rise + error)
+                stride *= counts[a]
+        a = d - 1
+        while a >= 0 and at[a] == spans[a, 1] + taps - 1:
+            at[a] = spans[a, 0]
+            a -= 1
+        if a < 0:
+            break
+        at[a] += 1
+    if beyond > 0.0:
+        grown = (1.0 + 2.0 * beyond) ** (3 * d) * (1.0 + 64.0 * EPSILON)
+        for k in range(m):
+            for s in range(1 + slopes):
+                middle = 0.5 * (lower[k, s] + upper[k, s])
+                radius = 0.5 * grown * (upper[k, s] - lower[k, s])
+                radius += 4.0 * EPSILON * (abs(middle) + radius)
+                lower[k, s], upper[k, s] = middle - radius, middle + radius
+
+
+@kernel
+def enclose_cells(
+    cubic: bool,
+    coarse: bool,
+    slopes: int,
+    counts: Integers,
+    wraps: Booleans,
+    coefficients: Array,
+    low: Array,
+    high: Array,
+    lower: Array,
+    upper: Array,
+) -> None:
+    """Bounds of a table, and of its derivatives per cell, over boxes low to high (N, d) in cells.
+
+    counts: coefficients along each axis. slopes: d, or 0 for values alone. lower, upper:
+    (N, m, 1 + slopes), the value first. coarse: by the coefficients alone, many times faster.
+    """
+    n, d = low.shape
+    m = lower.shape[1]
+    taps = 4 if cubic else 2
+    size = m * taps**d
+    taken, work = np.empty(size), np.empty((2, size))
+    spans = np.empty((d, 2), dtype=np.int64)
+    for b in range(n):
+        lower[b], upper[b] = np.inf, -np.inf
+        beyond, cells = 0.0, 1
+        for a in range(d):
+            first, last, out = _span(counts[a] - taps + 1, wraps[a], low[b, a], high[b, a])
+            spans[a, 0], spans[a, 1] = first, last
+            beyond = max(beyond, out)
+            cells *= last - first + 1
+        if coarse or cells > MANY * d:
+            _by_coefficients(
+                cubic, counts, wraps, m, slopes, coefficients, spans, beyond, lower[b], upper[b]
+            )
+        else:
+            _by_cells(
+                cubic, counts, wraps, m, slopes, coefficients, spans, low[b], high[b], taken,
+                work, lower[b], upper[b],
+            )
