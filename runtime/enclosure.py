@@ -4,16 +4,16 @@ m: axes, the states that a box spans; N: boxes. Everything else stands still, bu
 intervals. The bounds hold for real arithmetic; see `runtime.intervals` and `runtime.table_bounds`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias, final
 
 import numpy as np
 
-from runtime.arrays import Array
+from runtime.arrays import Array, Booleans
 from runtime.code import Code
 from runtime.flow import Source, rate_of
-from runtime.intervals import Interval, add, exactly, multiply, subtract, whole
+from runtime.intervals import Interval, add, exactly, multiply, subtract
 from runtime.jet_machine import run_over_boxes
 from runtime.jets import Jet, constant, jet_sum, unbounded
 from runtime.program import Kind, Program, State
@@ -77,7 +77,7 @@ def enclosure_of(
     index = {state.name: i for i, state in enumerate(program.states)}
     results = [rate_of(program, index[name], source) for name in axes]
     tables = sorted({t for r in results if isinstance(r, Sum) for _, t, _ in r.parts if t >= 0})
-    blocks = tuple(_block(program, axes, results, table, register) for table in tables)
+    blocks = tuple(_block(program, results, table, register) for table in tables)
     used = {name for block in blocks for name in block.arguments}
     codes = tuple(_code(result) for result in results)
     coordinates = [(c.name, c.code) for c in program.field.coordinates if c.name in used]
@@ -120,16 +120,18 @@ def slopes(field: Enclosure, low: Array, high: Array) -> Interval:
         if jet.slopes is None:
             entry = exactly(np.zeros((m, n)))
         else:
-            entry = Interval(*(np.broadcast_to(e, (m, n)) for e in (jet.slopes.low, jet.slopes.high)))
-        lost = ~np.broadcast_to(jet.sure, n) | np.isnan(jet.value.low) | ~_is_one_turn(field, i, jet)
+            entry = Interval(
+                *(np.broadcast_to(e, (m, n)) for e in (jet.slopes.low, jet.slopes.high))
+            )
+        lost = (
+            ~np.broadcast_to(jet.sure, n) | np.isnan(jet.value.low) | ~_is_one_turn(field, i, jet)
+        )
         entry = unbounded(entry, lost | np.isnan(entry.low))
         lower[:, i, :], upper[:, i, :] = entry.low.T, entry.high.T
     return Interval(lower, upper)
 
 
-def _jets(
-    field: Enclosure, low: Array, high: Array, *, moves: bool, coarse: bool
-) -> list[Jet]:
+def _jets(field: Enclosure, low: Array, high: Array, *, moves: bool, coarse: bool) -> list[Jet]:
     """The change along each axis over boxes; values alone where nothing `moves`."""
     n, m = low.shape
     register = dict(field.register)
@@ -142,7 +144,8 @@ def _jets(
     totals = _code_jets(field, register)
     for block in field.blocks:
         for i, jet in enumerate(_block_jets(block, register, m, n, coarse=coarse)):
-            totals[i] = jet if totals[i] is None else jet_sum(totals[i], jet)
+            before = totals[i]
+            totals[i] = jet if before is None else jet_sum(before, jet)
     known = [constant(exactly(0.0)) if jet is None else jet for jet in totals]
     return [_displacement(field, j, jet, register) for j, jet in enumerate(known)]
 
@@ -168,11 +171,13 @@ def _displacement(field: Enclosure, j: int, jet: Jet, register: Mapping[str, Jet
             turns = np.nan_to_num(np.round(0.5 * (value.low + value.high) / period))
         value = subtract(value, multiply(exactly(turns), exactly(period)))
         around = (value.low <= -period) | (value.high >= period)
-        value = Interval(*(np.where(around, w, v) for w, v in ((-np.inf, value.low), (np.inf, value.high))))
+        value = Interval(
+            *(np.where(around, w, v) for w, v in ((-np.inf, value.low), (np.inf, value.high)))
+        )
     return Jet(value, ahead, jet.sure)
 
 
-def _is_one_turn(field: Enclosure, j: int, jet: Jet) -> Array:
+def _is_one_turn(field: Enclosure, j: int, jet: Jet) -> Booleans:
     """Where a map's step is known to be of one number of whole turns."""
     return np.asarray(np.isfinite(jet.value.low) | (not (field.is_map and field.periods[j])))
 
@@ -184,7 +189,9 @@ def _register(program: Program, axes: tuple[str, ...], x: Array, controls: Array
         if state.name not in axes
     }
     for i, control in enumerate(program.controls):
-        held[control.name] = constant(Interval(np.asarray(controls[0, i]), np.asarray(controls[1, i])))
+        held[control.name] = constant(
+            Interval(np.asarray(controls[0, i]), np.asarray(controls[1, i]))
+        )
     return held | {c.name: constant(exactly(c.value)) for c in program.constants}
 
 
@@ -198,7 +205,6 @@ def _code(result: Code | Sum) -> Code | None:
 
 def _block(
     program: Program,
-    axes: tuple[str, ...],
     results: list[Code | Sum],
     table: int,
     register: Register,

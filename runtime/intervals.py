@@ -67,7 +67,7 @@ def holds_zero(a: Interval) -> Booleans:
 
 
 def add(a: Interval, b: Interval) -> Interval:
-    """a + b."""
+    """A + b."""
     return outward(a.low + b.low, a.high + b.high)
 
 
@@ -77,12 +77,12 @@ def negative(a: Interval) -> Interval:
 
 
 def subtract(a: Interval, b: Interval) -> Interval:
-    """a - b."""
+    """A - b."""
     return outward(a.low - b.high, a.high - b.low)
 
 
 def multiply(a: Interval, b: Interval) -> Interval:
-    """a b; what is exactly 0 stays so, also beside an unbounded factor."""
+    """A b; what is exactly 0 stays so, also beside an unbounded factor."""
     products = (a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high)
     low = np.minimum(np.minimum(products[0], products[1]), np.minimum(products[2], products[3]))
     high = np.maximum(np.maximum(products[0], products[1]), np.maximum(products[2], products[3]))
@@ -161,12 +161,12 @@ def even_rising(function: Real, a: Interval) -> Interval:
 
 
 def sine(a: Interval) -> Interval:
-    """sin a."""
+    """Sin a."""
     return _wave(np.sin, a, 0.25 * TURN)
 
 
 def cosine(a: Interval) -> Interval:
-    """cos a."""
+    """Cos a."""
     return _wave(np.cos, a, 0.0)
 
 

@@ -74,12 +74,12 @@ def stepwise(value: Interval, decided: Booleans, *operands: Jet) -> Jet:
 
 
 def jet_sum(a: Jet, b: Jet) -> Jet:
-    """a + b."""
+    """A + b."""
     return Jet(add(a.value, b.value), _added(a.slopes, b.slopes), _sure(a, b))
 
 
 def jet_difference(a: Jet, b: Jet) -> Jet:
-    """a - b."""
+    """A - b."""
     minus = None if b.slopes is None else negative(b.slopes)
     return Jet(subtract(a.value, b.value), _added(a.slopes, minus), _sure(a, b))
 
@@ -103,17 +103,13 @@ def jet_quotient(a: Jet, b: Jet) -> Jet:
 
 def jet_minimum(a: Jet, b: Jet) -> Jet:
     """The smaller of two."""
-    value = Interval(
-        np.minimum(a.value.low, b.value.low), np.minimum(a.value.high, b.value.high)
-    )
+    value = Interval(np.minimum(a.value.low, b.value.low), np.minimum(a.value.high, b.value.high))
     return Jet(value, _slopes_of_either(a, b, a.value, b.value), _sure(a, b))
 
 
 def jet_maximum(a: Jet, b: Jet) -> Jet:
     """The larger of two."""
-    value = Interval(
-        np.maximum(a.value.low, b.value.low), np.maximum(a.value.high, b.value.high)
-    )
+    value = Interval(np.maximum(a.value.low, b.value.low), np.maximum(a.value.high, b.value.high))
     return Jet(value, _slopes_of_either(a, b, b.value, a.value), _sure(a, b))
 
 

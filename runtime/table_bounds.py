@@ -13,7 +13,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans
 from runtime.intervals import Interval, add, chosen, exactly, multiply, outward, whole
-from runtime.jets import Jet
+from runtime.jets import Jet, constant
 from runtime.kernels.cells import EPSILON, ROUNDINGS, enclose_cells
 from runtime.program import Axis, Method, Table
 from runtime.tape import read_only_integers, read_only_view
@@ -87,7 +87,9 @@ def combined(columns: Columns, factors: Interval) -> Columns:
     )
 
 
-def column_jets(columns: Columns, arguments: Sequence[Jet], boxes: int, *, coarse: bool) -> list[Jet]:
+def column_jets(
+    columns: Columns, arguments: Sequence[Jet], boxes: int, *, coarse: bool
+) -> list[Jet]:
     """The columns where the axes have the jets `arguments`."""
     if not columns.axes:
         return [_still(c, e) for c, e in zip(columns.coefficients, columns.error, strict=True)]
@@ -108,7 +110,7 @@ def column_jets(columns: Columns, arguments: Sequence[Jet], boxes: int, *, coars
 
 
 def _still(value: float, error: float) -> Jet:
-    return Jet(outward(np.asarray(value - error), np.asarray(value + error)), None, np.asarray(True))  # noqa: FBT003 - an array
+    return constant(outward(np.asarray(value - error), np.asarray(value + error)))
 
 
 def _per_column(sizes: Array) -> Array:

@@ -8,11 +8,14 @@ from runtime.code import Code
 from runtime.flow import flow_of
 from runtime.integrators import adaptive, fixed_steps
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
+from runtime.intervals import Interval, exactly
+from runtime.jets import Jet
 from runtime.kernels.cache import is_warm, mark_warm
 from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.machine import evaluate
 from runtime.program import Axis, Field, Kind, Method, Origin, Program, Role, State, Unit
+from runtime.table_bounds import column_jets, columns_of
 
 __all__ = ["is_warm", "warm"]
 
@@ -55,10 +58,16 @@ def _adapt() -> object:
     return adaptive(flow_of(NO_MOTION), START, np.zeros(0), TIMES, 1e-6, 1e-6)
 
 
+def _bounds() -> object:
+    box = Jet(Interval(np.zeros(1), np.ones(1)), exactly(np.ones((1, 1))), np.asarray(True))  # noqa: FBT003 - an array
+    return column_jets(columns_of(TABLE), [box], 1, coarse=False)
+
+
 KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("interpolation", block_address),
     ("table lookup", lambda: lookup(TABLE, [0.5])),
     ("table derivatives", lambda: lookup_jacobian(TABLE, [0.5])),
+    ("bounds of tables", _bounds),
     ("machine", machine_address),
     ("expressions", lambda: evaluate([Code("x")], ("x",), START)),
     ("fixed steps", _step),

@@ -22,7 +22,7 @@ from runtime.kernels.cache import kernel, part
 ROUNDINGS = 16.0
 EPSILON = 2.0**-52
 MANY = 16
-"""A box that touches more cells than 4 per axis or this many is bounded by its coefficients."""
+"""A box that touches more cells than this for each axis is bounded by its coefficients."""
 
 
 @part
@@ -103,15 +103,13 @@ def _contract(
 
 
 @part
-def _span(
-    cells: int, wraps: bool, low: float, high: float
-) -> tuple[int, int, float]:
+def _span(cells: int, wraps: bool, low: float, high: float) -> tuple[int, int, float]:
     """The first and the last cell that [low, high] touches, and how far it sticks out of all."""
     first, last = int(np.floor(low)), int(np.ceil(high)) - 1
     last = max(first, last)
     if wraps:
-        return first, min(last, first + cells - 1), 0.0
-    beyond = max(0.0, max(-low, high - cells))
+        return first, last, 0.0
+    beyond = max(0.0, -low, high - cells)
     return min(max(first, 0), cells - 1), min(max(last, 0), cells - 1), beyond
 
 
@@ -148,7 +146,13 @@ def _gather(
 
 @part
 def _sub_box(
-    d: int, taps: int, counts: Integers, wraps: Booleans, cell: Integers, low: Array, high: Array,
+    d: int,
+    taps: int,
+    counts: Integers,
+    wraps: Booleans,
+    cell: Integers,
+    low: Array,
+    high: Array,
     t: Array,
 ) -> None:
     """The part of the box in one cell, t (d, 2); end cells go on beyond the edge."""
@@ -204,6 +208,21 @@ def _by_cells(
 
 
 @part
+def _widen(d: int, beyond: float, lower: Array, upper: Array) -> None:
+    """Widen hulls (m, columns) for a box that sticks out of the table by `beyond` cells.
+
+    A step of de Boor's recursion then has weights of the absolute sum 1 + 2 beyond at most.
+    """
+    grown = (1.0 + 2.0 * beyond) ** (3 * d) * (1.0 + 64.0 * EPSILON)
+    for k in range(lower.shape[0]):
+        for s in range(lower.shape[1]):
+            middle = 0.5 * (lower[k, s] + upper[k, s])
+            radius = 0.5 * grown * (upper[k, s] - lower[k, s])
+            radius += 4.0 * EPSILON * (abs(middle) + radius)
+            lower[k, s], upper[k, s] = middle - radius, middle + radius
+
+
+@part
 def _by_coefficients(
     cubic: bool,
     counts: Integers,
@@ -212,15 +231,10 @@ def _by_coefficients(
     slopes: int,
     coefficients: Array,
     spans: Integers,
-    beyond: float,
     lower: Array,
     upper: Array,
 ) -> None:
-    """Hull of the coefficients that the box sees: weights are not negative and sum to 1.
-
-    Beyond the edge by b cells, a step of de Boor's recursion has weights of the absolute sum
-    1 + 2 b at most, which widens the hull about its middle.
-    """
+    """Hull of the coefficients that the box sees: weights are not negative and sum to 1."""
     d, taps = len(counts), 4 if cubic else 2
     at = spans[:, 0].copy()
     place = np.empty(d, dtype=np.int64)
@@ -247,16 +261,8 @@ def _by_coefficients(
             at[a] = spans[a, 0]
             a -= 1
         if a < 0:
-            break
+            return
         at[a] += 1
-    if beyond > 0.0:
-        grown = (1.0 + 2.0 * beyond) ** (3 * d) * (1.0 + 64.0 * EPSILON)
-        for k in range(m):
-            for s in range(1 + slopes):
-                middle = 0.5 * (lower[k, s] + upper[k, s])
-                radius = 0.5 * grown * (upper[k, s] - lower[k, s])
-                radius += 4.0 * EPSILON * (abs(middle) + radius)
-                lower[k, s], upper[k, s] = middle - radius, middle + radius
 
 
 @kernel
@@ -285,18 +291,34 @@ def enclose_cells(
     spans = np.empty((d, 2), dtype=np.int64)
     for b in range(n):
         lower[b], upper[b] = np.inf, -np.inf
-        beyond, cells = 0.0, 1
+        beyond, cells, around = 0.0, 1, False
         for a in range(d):
-            first, last, out = _span(counts[a] - taps + 1, wraps[a], low[b, a], high[b, a])
+            count = counts[a] - taps + 1
+            first, last, out = _span(count, wraps[a], low[b, a], high[b, a])
+            if last - first >= count:  # more than a turn: each cell once, but all of it
+                last, around = first + count - 1, True
             spans[a, 0], spans[a, 1] = first, last
             beyond = max(beyond, out)
             cells *= last - first + 1
-        if coarse or cells > MANY * d:
+        if coarse or around or cells > MANY * d:
             _by_coefficients(
-                cubic, counts, wraps, m, slopes, coefficients, spans, beyond, lower[b], upper[b]
+                cubic, counts, wraps, m, slopes, coefficients, spans, lower[b], upper[b]
             )
+            if beyond > 0.0:
+                _widen(d, beyond, lower[b], upper[b])
         else:
             _by_cells(
-                cubic, counts, wraps, m, slopes, coefficients, spans, low[b], high[b], taken,
-                work, lower[b], upper[b],
+                cubic,
+                counts,
+                wraps,
+                m,
+                slopes,
+                coefficients,
+                spans,
+                low[b],
+                high[b],
+                taken,
+                work,
+                lower[b],
+                upper[b],
             )

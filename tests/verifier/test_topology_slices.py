@@ -98,8 +98,8 @@ def test_a_sensed_state_without_closure_is_held_and_the_driven_one_is_the_line()
     ("axes", "held", "message"),
     [
         (("x", "w"), {}, "no state variable is named 'w'; "),
-        (("x", "x"), {}, "three different axes"),
-        (("x", "y", "z", "w"), {}, "one to three"),
+        (("x", "x"), {}, "four different axes"),
+        (("x", "y", "z", "w", "v"), {}, "one to four"),
         (("x", "y"), {"x": 1.0}, "'x' is an axis"),
         (("x", "y"), {"rhoo": 1.0}, "did you mean 'rho'"),
         (("x", "y"), {"rho": 41.0}, "'rho' must be in 0..40 1 (got 41)"),

@@ -82,7 +82,7 @@ def _of_two_steps(J: Interval) -> int | None:
         return None
     if signs != [1, 1]:
         return signs.count(-1)
-    if -1.0 < determinant.low and determinant.high < 1.0:
+    if determinant.low > -1.0 and determinant.high < 1.0:
         return 0
     return 2 if determinant.low > 1.0 else None
 

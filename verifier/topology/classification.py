@@ -4,6 +4,8 @@ J: Jacobian (m, m); λ: its eigenvalues. A direction contracts where Re(λ) < 0,
 |λ| < 1; `growth` is Re(λ) or log|λ|, so that its sign decides in both cases.
 """
 
+from typing import assert_never
+
 import numpy as np
 import numpy.typing as npt
 
@@ -47,16 +49,30 @@ def classified(
     values = np.array(eigenvalues)
     growth = _growth(values, is_map=is_map)
     turning = _turning(values, is_map=is_map, doubt=doubt)
-    if turning.any():
-        neutral = np.abs(growth) <= np.maximum(NEUTRAL * np.abs(turning), doubt)
-        if neutral.all():
-            return PointKind.CENTER
-        return PointKind.STABLE_FOCUS if growth.max() < 0 else PointKind.UNSTABLE_FOCUS
-    if np.abs(growth).min() <= max(SINGULAR * rate, doubt):
-        return PointKind.DEGENERATE
+    turns = bool(turning.any())
+    least = np.where(turning == 0.0, SINGULAR * rate, NEUTRAL * np.abs(turning))
+    neutral = np.abs(growth) <= np.maximum(least, doubt)
+    if neutral.any():
+        return PointKind.CENTER if turns and neutral.all() else PointKind.DEGENERATE
     if growth.min() < 0 < growth.max():
         return PointKind.SADDLE
-    return PointKind.STABLE_NODE if growth.max() < 0 else PointKind.UNSTABLE_NODE
+    if growth.max() < 0:
+        return PointKind.STABLE_FOCUS if turns else PointKind.STABLE_NODE
+    return PointKind.UNSTABLE_FOCUS if turns else PointKind.UNSTABLE_NODE
+
+
+def grows(kind: PointKind, m: int) -> range | None:
+    """How many of m directions grow at a point of this type; None where some do neither."""
+    match kind:
+        case PointKind.STABLE_NODE | PointKind.STABLE_FOCUS:
+            return range(1)
+        case PointKind.UNSTABLE_NODE | PointKind.UNSTABLE_FOCUS:
+            return range(m, m + 1)
+        case PointKind.SADDLE:
+            return range(1, m)
+        case PointKind.CENTER | PointKind.DEGENERATE:
+            return None
+    assert_never(kind)
 
 
 def eigenvalue_doubt(J: Array, resolution: Array) -> float:
@@ -67,6 +83,8 @@ def eigenvalue_doubt(J: Array, resolution: Array) -> float:
     m = J.shape[0]
     if m == 1 or not resolution.any():
         return float(resolution.max())
+    if m > 2:
+        return _doubt_of_many(J, resolution)
     # λ solves λ² - tr λ + det = 0, so dλ = (λ dtr - ddet) / (2λ - tr).
     trace, determinant = float(np.trace(J)), float(np.linalg.det(J))
     d_trace = float(np.trace(resolution))
@@ -75,6 +93,12 @@ def eigenvalue_doubt(J: Array, resolution: Array) -> float:
     gap = abs(trace * trace - 4.0 * determinant) ** 0.5
     moved = size * d_trace + d_determinant
     return float(min(moved / gap if gap > 0 else np.inf, (moved + d_trace**2) ** 0.5))
+
+
+def _doubt_of_many(J: Array, resolution: Array) -> float:
+    """The condition of the eigenvectors times the size of the error (Bauer and Fike 1960)."""
+    _, vectors = np.linalg.eig(J)
+    return float(np.linalg.cond(vectors) * np.linalg.norm(resolution))
 
 
 def _growth(values: npt.NDArray[np.complex128], *, is_map: bool) -> Array:

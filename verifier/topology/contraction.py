@@ -75,7 +75,7 @@ def is_inside(found: Contraction, centre: Array, radius: Array) -> Booleans:
 
 
 def narrowed(found: Contraction, low: Array, high: Array) -> tuple[Array, Array]:
-    """The boxes low to high (B, m) without what lies outside K; low > high where nothing is left."""
+    """The part of the boxes low to high (B, m) that lies in K; low > high where there is none."""
     with np.errstate(invalid="ignore"):
         known = np.isfinite(found.radius) & np.isfinite(found.centre)
         first = np.nextafter(found.centre - found.radius, -np.inf)
@@ -86,9 +86,7 @@ def narrowed(found: Contraction, low: Array, high: Array) -> tuple[Array, Array]
         )
 
 
-def mean_value(
-    values: Interval, slopes: Interval, radius: Array
-) -> Interval:
+def mean_value(values: Interval, slopes: Interval, radius: Array) -> Interval:
     """Bounds (B, m) of f over boxes of this radius from bounds at the centres and of slopes."""
     with np.errstate(all="ignore"):
         steepest = np.maximum(np.abs(slopes.low), np.abs(slopes.high))

@@ -1,21 +1,28 @@
-"""The fixed points of a slice with their types.
+"""The fixed points of a slice with their types, and what is proved of them.
 
 m: number of axes; J: Jacobian (m, m) at a point.
 """
 
-from itertools import product
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, final
 
 import numpy as np
 
 from runtime.arrays import Array, frozen
-from verifier.topology.classification import classified, eigenvalue_doubt, spectrum
-from verifier.topology.features import FixedPoint, Grid, PointKind, Standing
+from runtime.flow import Source
+from verifier.topology.classification import classified, eigenvalue_doubt, grows, spectrum
+from verifier.topology.features import (
+    Completeness,
+    FixedPoint,
+    Grid,
+    PointKind,
+    Standing,
+    UndecidedBox,
+)
+from verifier.topology.proof import Proof, prove
 from verifier.topology.slices import Slice, drifts_at, jacobians_at, shortest
-from verifier.topology.zeros import find_zeros
-
-BLUR: Final = 1e-5
-"""A point whose Jacobian is singular within this share of the widths is degenerate."""
+from verifier.topology.standings import compared
+from verifier.topology.zeros import largest_rates, near_misses, zeros_in
 
 CROWD: Final = 12
 """More degenerate points than these are samples of a curve or an area of fixed points."""
@@ -23,93 +30,161 @@ CROWD: Final = 12
 SPACING: Final = 0.04
 """How far apart, as a share of the widths, the samples of such a curve are kept."""
 
+SHARP: Final = 1e-7
+"""Bounds of a derivative that are closer than this share of its size give its value."""
 
-def find_fixed_points(view: Slice, grid: Grid) -> tuple[tuple[FixedPoint, ...], tuple[str, ...]]:
-    """The fixed points in order of their coordinates, and notes on what they do not tell."""
-    zeros = find_zeros(view, grid)
-    if not len(zeros):
-        return (), ()
-    J = jacobians_at(view, zeros)
-    formula = None if view.formula is None else jacobians_at(view, zeros, view.formula)
-    singular = _is_singular_near(view, zeros)
-    drifts = _drifting(view, zeros, grid)
-    rate = _typical_rate(view, grid)
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Scene:
+    """What every point is looked at with: typical rates (m,), and one per domain, 1/s."""
+
+    view: Slice
+    largest: Array
+    rate: float
+
+
+def find_fixed_points(
+    view: Slice, grid: Grid
+) -> tuple[tuple[FixedPoint, ...], Completeness, tuple[str, ...]]:
+    """The fixed points in order of their coordinates, how complete they are, and notes.
+
+    The proved zeros come with those in undecided boxes that Newton's method finds, and with places
+    where the tables are so near to zero that their error leaves it open.
+    """
+    scale = largest_rates(grid)
+    if not np.all(scale > 0.0):
+        return (), _nothing_known(view), ()
+    # The largest rate as a share of the domain; of a map, which has no time, 1.
+    rate = 1.0 if view.is_map else float(np.nanmax(np.abs(grid.rates) / view.width))
+    scene = _Scene(view, scale, rate)
+    proof = prove(view)
+    standings, lost = _standings(view, proof)
+    points = _proved(scene, proof, standings)
+    loose = zeros_in(view, proof.undecided, scale)
+    known = np.concatenate([proof.zeros, loose])
+    doubtful = np.concatenate([loose, near_misses(view, grid, known, scale)])
+    kept, notes = _thinned(view, [*points, *_degenerate(scene, doubtful)])
+    ordered = tuple(sorted(kept, key=lambda point: tuple(point.at)))
+    return ordered, Completeness(proof.complete, proof.undecided, lost, proof.about), notes
+
+
+def _nothing_known(view: Slice) -> Completeness:
+    """Of a field that does not move along an axis: any point may be a zero."""
+    everywhere = UndecidedBox(frozen(view.low), frozen(view.low + view.width))
+    nothing = frozen(np.empty((0, len(view.axes))))
+    return Completeness(complete=False, undecided=(everywhere,), lost=nothing, about="")
+
+
+def _standings(view: Slice, proof: Proof) -> tuple[tuple[Standing, ...], Array]:
+    if view.formula is None:
+        nothing = frozen(np.empty((0, len(view.axes))))
+        return tuple(Standing.UNCOMPARED for _ in proof.zeros), nothing
+    return compared(view, proof, prove(view, source=Source.FORMULA))
+
+
+def _proved(scene: _Scene, proof: Proof, standings: tuple[Standing, ...]) -> list[FixedPoint]:
+    if not len(proof.zeros):
+        return []
+    view = scene.view
+    J = _jacobians(view, proof)
+    formula = _formula_jacobians(view, proof.zeros)
+    drifts = _drifting(scene, proof.zeros)
     points = []
-    for i, at in enumerate(zeros):
+    for i, at in enumerate(proof.zeros):
         eigenvalues, vectors = spectrum(J[i])
         of_formula = None if formula is None else spectrum(formula[i])[0]
-        kind = (
-            PointKind.DEGENERATE
-            if singular[i]
-            else _kind(view, J[i], eigenvalues, of_formula, rate)
-        )
+        kind = _kind(scene, J[i], eigenvalues, of_formula)
         points.append(
             FixedPoint(
-                frozen(at),
-                kind,
-                eigenvalues,
-                vectors,
-                of_formula,
-                drifts[i],
+                at=frozen(at),
+                kind=kind,
+                eigenvalues=eigenvalues,
+                vectors=vectors,
+                formula_eigenvalues=of_formula,
+                drifts=drifts[i],
+                proved=True,
+                kind_proved=_is_certain(kind, proof.unstable[i], len(at)),
+                radius=frozen(proof.radii[i]),
+                standing=standings[i],
+            )
+        )
+    return points
+
+
+def _degenerate(scene: _Scene, places: Array) -> list[FixedPoint]:
+    """Points of which nothing is proved."""
+    if not len(places):
+        return []
+    view = scene.view
+    J, formula = jacobians_at(view, places), _formula_jacobians(view, places)
+    drifts = _drifting(scene, places)
+    points = []
+    for i, at in enumerate(places):
+        eigenvalues, vectors = spectrum(J[i])
+        points.append(
+            FixedPoint(
+                at=frozen(at),
+                kind=PointKind.DEGENERATE,
+                eigenvalues=eigenvalues,
+                vectors=vectors,
+                formula_eigenvalues=None if formula is None else spectrum(formula[i])[0],
+                drifts=drifts[i],
                 proved=False,
                 kind_proved=False,
                 radius=frozen(np.zeros(len(at))),
                 standing=Standing.UNCOMPARED,
             )
         )
-    return _thinned(view, tuple(points))
+    return points
+
+
+def _jacobians(view: Slice, proof: Proof) -> Array:
+    """Derivatives at the zeros: the middle of their bounds where these are close."""
+    low, high = proof.slopes.low, proof.slopes.high
+    size = np.maximum(np.abs(low), np.abs(high)).max(axis=(-2, -1), keepdims=True)
+    close = np.all(high - low <= SHARP * size, axis=(-2, -1), keepdims=True)
+    return np.where(close, 0.5 * low + 0.5 * high, jacobians_at(view, proof.zeros))
+
+
+def _formula_jacobians(view: Slice, places: Array) -> Array | None:
+    return None if view.formula is None else jacobians_at(view, places, view.formula)
 
 
 def _kind(
-    view: Slice,
+    scene: _Scene,
     J: Array,
     eigenvalues: tuple[complex, ...],
     of_formula: tuple[complex, ...] | None,
-    rate: float,
 ) -> PointKind:
     """The type by the table; by the formula where the table's error leaves it open."""
     if not eigenvalues:
         return PointKind.DEGENERATE
-    doubt = eigenvalue_doubt(J, view.resolution)
-    kind = classified(eigenvalues, is_map=view.is_map, rate=rate, doubt=doubt)
+    is_map = scene.view.is_map
+    doubt = eigenvalue_doubt(J, scene.view.resolution)
+    kind = classified(eigenvalues, is_map=is_map, rate=scene.rate, doubt=doubt)
     if of_formula is None or kind not in {PointKind.CENTER, PointKind.DEGENERATE}:
         return kind
-    return classified(of_formula, is_map=view.is_map, rate=rate, doubt=0.0)
+    return classified(of_formula, is_map=is_map, rate=scene.rate, doubt=0.0)
 
 
-def _typical_rate(view: Slice, grid: Grid) -> float:
-    """The field's largest rate as a share of the domain, 1/s; 1 for a map."""
-    return 1.0 if view.is_map else float(np.nanmax(np.abs(grid.rates) / view.width))
+def _is_certain(kind: PointKind, unstable: int | None, m: int) -> bool:
+    """Whether the number of directions that grow for certain is that of the type."""
+    directions = grows(kind, m)
+    return unstable is not None and directions is not None and unstable in directions
 
 
-def _is_singular_near(view: Slice, zeros: Array) -> list[bool]:
-    """Whether the Jacobian's determinant changes sign within `BLUR` of each zero.
-
-    At a double zero it does, and a zero is never known better than that. So does a Jacobian that
-    does not exist, at the edge of where the field does.
-    """
-    m = len(view.axes)
-    corners = np.array(list(product((-1.0, 1.0), repeat=m))) * BLUR * view.width
-    around = zeros[:, None, :] + corners
-    inside = np.clip(around, view.low, view.low + view.width)
-    J = jacobians_at(view, np.where(view.periodic, around, inside))
-    sign = np.sign(np.linalg.det(np.nan_to_num(J - (np.eye(m) if view.is_map else 0.0))))
-    return [bool(one.min() != one.max()) for one in sign]
-
-
-def _drifting(view: Slice, zeros: Array, grid: Grid) -> list[tuple[str, ...]]:
-    """For each zero the names of the held variables that would move there."""
-    states = view.program.states
-    names = [s.name for s in states]
-    moves = np.abs(drifts_at(view, zeros)) > 1e-9 * float(np.nanmax(np.abs(grid.rates)))
+def _drifting(scene: _Scene, places: Array) -> list[tuple[str, ...]]:
+    """For each place the names of the held variables that would move there."""
+    view = scene.view
+    names = [s.name for s in view.program.states]
+    moves = np.abs(drifts_at(view, places)) > 1e-9 * float(scene.largest.max())
     return [tuple(names[j] for j in np.flatnonzero(row) if j not in view.columns) for row in moves]
 
 
-def _thinned(
-    view: Slice, points: tuple[FixedPoint, ...]
-) -> tuple[tuple[FixedPoint, ...], tuple[str, ...]]:
+def _thinned(view: Slice, points: list[FixedPoint]) -> tuple[list[FixedPoint], tuple[str, ...]]:
     """All points, but of a continuum of degenerate ones only some, and a note that says so."""
-    degenerate = [p for p in points if p.kind is PointKind.DEGENERATE]
+    degenerate = [p for p in points if not p.proved]
     if len(degenerate) <= CROWD:
         return points, ()
     kept: list[FixedPoint] = []
@@ -118,4 +193,4 @@ def _thinned(
         if min(gaps, default=1.0) >= SPACING:
             kept.append(point)
     note = f"fixed points fill a curve or an area; {len(kept)} points of it are listed"
-    return tuple(p for p in points if p.kind is not PointKind.DEGENERATE or p in kept), (note,)
+    return [p for p in points if p.proved or p in kept], (note,)

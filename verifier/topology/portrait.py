@@ -11,7 +11,6 @@ from runtime.program import Program
 from verifier.topology.basins import find_basins
 from verifier.topology.cycles import find_cycles
 from verifier.topology.features import (
-    Completeness,
     Cycle,
     FixedPoint,
     Grid,
@@ -23,7 +22,7 @@ from verifier.topology.fixed_points import find_fixed_points
 from verifier.topology.manifolds import find_separatrices
 from verifier.topology.nullclines import find_nullclines
 from verifier.topology.orbits import find_orbits
-from verifier.topology.slices import Slice, cut, rates_at
+from verifier.topology.slices import Slice, SliceError, cut, rates_at
 from verifier.topology.trajectories import find_trajectories
 
 
@@ -46,6 +45,9 @@ class Detail:
 
 EVERYTHING: Final = Detail()
 
+MOST_AXES: Final = 3
+"""More axes nobody can draw; their fixed points are proved all the same."""
+
 FIELD_STRIDE: Final = 4
 """Every which node of the search grid is kept in the portrait."""
 
@@ -65,8 +67,11 @@ def portrait(
         SliceError: an axis or a held value that the behavior does not have.
     """
     view = cut(program, axes, held or {})
+    if len(view.axes) > MOST_AXES:
+        named = ", ".join(axis.name for axis in view.axes)
+        raise SliceError(f"a portrait has one to three different axes (got {named})")
     grid = _sampled(view, detail)
-    points, remarks = find_fixed_points(view, grid)
+    points, completeness, remarks = find_fixed_points(view, grid)
     cycles, hints = _cycles(view, points, detail)
     separatrices = find_separatrices(view, points, cycles) if detail.separatrices else ()
     planar = len(view.axes) == 2
@@ -79,9 +84,7 @@ def portrait(
         field=_thinned(grid, 2 * FIELD_STRIDE if len(view.axes) == 1 else FIELD_STRIDE),
         nullclines=find_nullclines(view, grid) if planar else (),
         fixed_points=points,
-        completeness=Completeness(
-            complete=False, undecided=(), lost=frozen(np.empty((0, len(view.axes)))), about=""
-        ),
+        completeness=completeness,
         cycles=cycles,
         separatrices=separatrices,
         basins=find_basins(view, points, cycles, detail.basins),

@@ -45,6 +45,9 @@ WORK: Final = 250_000_000
 SIZES: Final = (2.0, 0.5, 0.1, 0.01, 1e-3)
 """Radii of the regions that are tried around a zero, in radii of the box that led to it."""
 
+CONTRACTIONS: Final = 12
+"""So often is a box around a zero contracted at most; from a tenth of the domain it takes six."""
+
 LEAST_START: Final = {1: 64, 2: 32, 3: 12, 4: 6}
 """Boxes per axis that a search begins with, for each number of axes."""
 
@@ -324,7 +327,7 @@ def _tightened(
 ) -> tuple[Array, Array]:
     """Boxes around proved zeros, contracted as far as it goes."""
     low, high = low.copy(), high.copy()
-    for _ in range(4):
+    for _ in range(CONTRACTIONS):
         centre = 0.5 * (low[ok] + high[ok])
         radius = np.nextafter(np.maximum(high[ok] - centre, centre - low[ok]), np.inf)
         values, J = changes(field, centre, centre), slopes(field, low[ok], high[ok])
@@ -332,6 +335,8 @@ def _tightened(
         first, last = narrowed(found, low[ok], high[ok])
         fine = np.all(first <= last, axis=-1, keepdims=True)
         low[ok], high[ok] = np.where(fine, first, low[ok]), np.where(fine, last, high[ok])
+        if np.all(high[ok] - low[ok] > 1.8 * radius):
+            break
     return low, high
 
 
@@ -438,9 +443,7 @@ def _named(view: Slice, regions: _Regions) -> tuple[Array, Array]:
     return zeros, np.nextafter(np.maximum(radii, 0.0), np.inf)
 
 
-def _outside(
-    regions: _Regions, boxes: list[tuple[Array, Array]], m: int
-) -> tuple[Array, Array]:
+def _outside(regions: _Regions, boxes: list[tuple[Array, Array]], m: int) -> tuple[Array, Array]:
     """All open boxes, without those inside regions that were found later."""
     low = np.concatenate([np.empty((0, m)), *(low for low, _ in boxes)])
     high = np.concatenate([np.empty((0, m)), *(high for _, high in boxes)])

@@ -1,4 +1,4 @@
-"""A slice of a behavior: one to three states move, everything else is held at named values.
+"""A slice of a behavior: one to four states move, everything else is held at named values.
 
 m: number of axes; n: of states; p: of controls. Points are (..., m), SI.
 """
@@ -163,8 +163,8 @@ def _default_axes(program: Program) -> tuple[str, ...]:
 
 
 def _columns(program: Program, axes: tuple[str, ...]) -> tuple[int, ...]:
-    if len(axes) not in {1, 2, 3} or len(set(axes)) != len(axes):
-        raise SliceError(f"a portrait has one to three different axes (got {', '.join(axes)})")
+    if len(axes) not in {1, 2, 3, 4} or len(set(axes)) != len(axes):
+        raise SliceError(f"a slice has one to four different axes (got {', '.join(axes)})")
     states = {state.name: i for i, state in enumerate(program.states)}
     for name in axes:
         if name not in states:

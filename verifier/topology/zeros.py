@@ -1,17 +1,18 @@
-"""Zeros of the field on a slice: candidates from a fine grid, refined by Newton's method.
+"""Zeros that could not be proved: least places of the field, refined by Newton's method.
 
-m: number of axes; g: the rates divided by their largest size, so that |g| <= 1 in each
-component. Not a proof that none is missed: two zeros within one cell of the grid may be seen as
-one, and the report must say so.
+They show where in an undecided box the field vanishes as far as numbers can tell, and where the
+tables come so near to zero that their error leaves it open. m: number of axes; g: the rates divided
+by their largest size, so that |g| <= 1 in each component.
 """
 
+from collections.abc import Sequence
 from itertools import product
 from typing import Final
 
 import numpy as np
 
 from runtime.arrays import Array, Booleans
-from verifier.topology.features import Grid
+from verifier.topology.features import Grid, UndecidedBox
 from verifier.topology.slices import Slice, jacobians_at, rates_at, shortest, wrapped
 
 ITERATIONS: Final = 60
@@ -26,7 +27,7 @@ LEAST_DAMPING: Final = 1e-15
 ROUNDING: Final = 1e-15
 """Coordinates smaller than this share of the widths are zero."""
 
-CANDIDATES: Final = 4000
+CANDIDATES: Final = 400
 """More starts than these come only from a continuum of zeros, which fewer show as well."""
 
 APART: Final = 1e-6
@@ -36,21 +37,38 @@ BLURRED: Final = 1e-3
 """Where the tables can't tell zero from a near miss, zeros this close are one."""
 
 
-def find_zeros(view: Slice, grid: Grid) -> Array:
-    """The zeros (k, m) of the field on the slice, in order of their coordinates."""
-    scale = _scale(grid)
-    if not np.all(scale > 0.0):
+def zeros_in(view: Slice, boxes: Sequence[UndecidedBox], scale: Array) -> Array:
+    """Zeros (k, m) in or beside the boxes, as far as numbers can tell."""
+    if not boxes:
         return np.empty((0, len(view.axes)))
-    starts = _candidates(grid, scale)
-    found = _refined(view, starts, scale)
-    residual = np.abs(rates_at(view, found))
+    low, high = np.stack([b.low for b in boxes]), np.stack([b.high for b in boxes])
+    starts = 0.5 * (low + high)
+    found = _refined(view, starts[:: 1 + len(starts) // CANDIDATES], scale)
     with np.errstate(invalid="ignore"):
-        sharp = np.all(residual <= ZERO * scale, axis=-1)
-        blurred = np.all(residual <= view.accuracy, axis=-1) & ~sharp
-    zeros = _merged(view, wrapped(view, found[sharp]), APART)
-    more = _merged(view, wrapped(view, found[blurred]), BLURRED)
-    everything = np.concatenate([zeros, _away_from(view, more, zeros)])
-    return _ordered(_canonical(view, everything))
+        sharp = np.all(np.abs(rates_at(view, found)) <= ZERO * scale, axis=-1)
+    slack = BLURRED * view.width
+    beside = (found[:, None] >= low - slack) & (found[:, None] <= high + slack)
+    sharp &= beside.all(axis=-1).any(axis=-1)
+    return _ordered(_canonical(view, _merged(view, wrapped(view, found[sharp]), APART)))
+
+
+def near_misses(view: Slice, grid: Grid, zeros: Array, scale: Array) -> Array:
+    """Places (k, m) away from `zeros` where the tables are off by more than the rates are."""
+    if not np.any(view.accuracy > 0.0):
+        return np.empty((0, len(view.axes)))
+    found = _refined(view, _least_nodes(grid, scale), scale)
+    with np.errstate(invalid="ignore"):
+        close = np.all(np.abs(rates_at(view, found)) <= view.accuracy, axis=-1)
+    places = _canonical(view, _merged(view, wrapped(view, found[close]), BLURRED))
+    near = [bool(np.any(_near(view, zeros, place, BLURRED))) for place in places]
+    return _ordered(places[~np.array(near, dtype=np.bool_)])
+
+
+def largest_rates(grid: Grid) -> Array:
+    """The largest size of each rate on the grid, (m,)."""
+    sizes = np.abs(grid.rates).reshape(-1, grid.rates.shape[-1])
+    finite = np.where(np.isfinite(sizes), sizes, 0.0)
+    return np.asarray(finite.max(axis=0))
 
 
 def _canonical(view: Slice, points: Array) -> Array:
@@ -60,35 +78,13 @@ def _canonical(view: Slice, points: Array) -> Array:
     return np.where(at_seam, view.low, at_zero)
 
 
-def _scale(grid: Grid) -> Array:
-    """The largest size of each rate on the grid, (m,)."""
-    sizes = np.abs(grid.rates).reshape(-1, grid.rates.shape[-1])
-    finite = np.where(np.isfinite(sizes), sizes, 0.0)
-    return np.asarray(finite.max(axis=0))
-
-
-def _candidates(grid: Grid, scale: Array) -> Array:
-    """Centres of cells in which all rates change sign, and nodes where |g| is least around."""
-    g = grid.rates / scale
-    cells = _sign_change(g)
-    nodes = _is_least(np.abs(g).max(axis=-1))
+def _least_nodes(grid: Grid, scale: Array) -> Array:
+    """Nodes where |g| is small and least around; the smallest where there are many."""
+    size = np.abs(grid.rates / scale).max(axis=-1)
+    least = _is_least(size)
     corners = np.stack(np.meshgrid(*grid.nodes, indexing="ij"), axis=-1)
-    steps = np.array([axis[1] - axis[0] for axis in grid.nodes])
-    inner = corners[(slice(None, -1),) * len(grid.nodes)]
-    starts = np.concatenate([inner[cells] + 0.5 * steps, corners[nodes]])
-    return starts[:: 1 + len(starts) // CANDIDATES]
-
-
-def _sign_change(g: Array) -> Booleans:
-    """For each cell whether every component of g (n1, ..., nm, m) has both signs or a zero."""
-    m = g.shape[-1]
-    corners = [
-        g[tuple(slice(1, None) if up else slice(None, -1) for up in corner)]
-        for corner in product((False, True), repeat=m)
-    ]
-    stack = np.stack(corners)
-    change = (stack.min(axis=0) <= 0.0) & (stack.max(axis=0) >= 0.0)
-    return np.asarray(change.all(axis=-1))
+    order = np.argsort(size[least], kind="stable")[:CANDIDATES]
+    return np.asarray(corners[least][order])
 
 
 def _is_least(size: Array) -> Booleans:
@@ -106,6 +102,8 @@ def _is_least(size: Array) -> Booleans:
 def _refined(view: Slice, starts: Array, scale: Array) -> Array:
     """`starts` (k, m), moved to where |g| is least by Levenberg's damped Newton method."""
     points, width = starts.copy(), view.width
+    if not len(starts):
+        return points
     size, damping = _size(view, points, scale), np.full(len(points), 1e-6)
     reach = 0.05 * width
     for _ in range(ITERATIONS):
@@ -154,14 +152,9 @@ def _merged(view: Slice, points: Array, distance: float) -> Array:
     return kept
 
 
-def _away_from(view: Slice, points: Array, others: Array) -> Array:
-    near = [bool(np.any(_near(view, others, point, BLURRED))) for point in points]
-    return np.asarray(points[~np.array(near, dtype=bool)])
-
-
 def _near(view: Slice, points: Array, point: Array, distance: float) -> Booleans:
     apart = np.abs(shortest(view, points - point)) / view.width
-    return np.asarray(apart.max(axis=-1) < distance if len(points) else np.zeros(0, dtype=bool))
+    return np.asarray(apart.max(axis=-1) < distance if len(points) else np.zeros(0, dtype=np.bool_))
 
 
 def _ordered(points: Array) -> Array:
