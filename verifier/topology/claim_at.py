@@ -39,7 +39,6 @@ class Verdict:
     """A claim at one setting. place: of the feature that the sentence speaks of, if there is."""
 
     outcome: Outcome
-    proved: bool
     sentence: str
     place: Settings
 
@@ -129,25 +128,12 @@ def _counted(claim: Claim, seen: Portrait, found: tuple[Member, ...]) -> Verdict
     else:
         outcome = Outcome.OPEN
     sentence = _sentence(claim, seen, found, outcome)
-    return Verdict(
-        outcome, _is_proved(claim, seen, found), sentence, _place(claim, seen, found, outcome)
-    )
+    return Verdict(outcome, sentence, _place(claim, seen, found, outcome))
 
 
 def _unseen(claim: Claim, completeness: Completeness) -> float:
     """How many more there may be: any number in a box that is not decided."""
     return np.inf if claim.feature in POINTS and completeness.undecided else 0
-
-
-def _is_proved(claim: Claim, seen: Portrait, found: tuple[Member, ...]) -> bool:
-    """Whether interval arithmetic alone shows what was found."""
-    points = [member for member in found if not member.is_cycle]
-    sure = [member for member in points if member.fit is Fit.YES]
-    if claim.most is None and claim.least > 0:
-        return sum(member.proved for member in sure) >= claim.least
-    if claim.feature in CYCLES or claim.feature not in POINTS:
-        return False
-    return seen.completeness.complete and all(member.proved for member in points)
 
 
 def _sentence(claim: Claim, seen: Portrait, found: tuple[Member, ...], outcome: Outcome) -> str:
@@ -210,10 +196,10 @@ def _basin(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], settings: Set
     wanted_share = claim.share or 0.0
     if not goal:
         nothing = f"{name} is not there: {listed_features(seen)}"
-        return Verdict(Outcome.FAILS, proved=False, sentence=nothing, place=())
+        return Verdict(Outcome.FAILS, nothing, ())
     if seen.basins is None:
         nothing = f"nothing attracts; {listed_features(seen)}"
-        return Verdict(Outcome.FAILS, proved=False, sentence=nothing, place=())
+        return Verdict(Outcome.FAILS, nothing, ())
     basins = seen.basins
     share = sum(a.share for a in basins.attractors if (a.is_cycle, a.index) in goal)
     # A cell on the edge of a basin belongs to it or not: the share is known to about its edge.
@@ -221,7 +207,7 @@ def _basin(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], settings: Set
     room = 0.0 if share == 1.0 else min(room, 0.5 * (1.0 - share), 0.5 * share)
     sentence = f"{100.0 * share:.1f} % of the domain goes to {name}"
     if wanted_share <= share - room or (wanted_share == 1.0 and share == 1.0):
-        return Verdict(Outcome.HOLDS, proved=False, sentence=sentence, place=())
+        return Verdict(Outcome.HOLDS, sentence, ())
     failing = share + basins.open + room < wanted_share
     sentence += f", less than {100.0 * wanted_share:g} %" if failing else ", too close to tell"
     if basins.leaves >= 0.001:
@@ -235,7 +221,7 @@ def _basin(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], settings: Set
         )
         sentence += f"; {100.0 * attractor.share:.1f} % goes to the {where}"
     outcome = Outcome.FAILS if failing else Outcome.OPEN
-    return Verdict(outcome, proved=False, sentence=sentence, place=_elsewhere(seen, goal))
+    return Verdict(outcome, sentence, _elsewhere(seen, goal))
 
 
 def _elsewhere(seen: Portrait, goal: set[tuple[bool, int]]) -> Settings:

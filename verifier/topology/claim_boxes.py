@@ -1,24 +1,247 @@
-"""A claim about fixed points, proved on whole boxes of controls."""
+"""Claims about fixed points, proved for whole boxes of controls.
+
+All zeros of the field are enclosed for all controls of a box at once (`prove`). Where the number of
+those that a claim counts is the same for the whole box, the claim is decided there; otherwise the
+box is halved. Whether a point turns is decided by its Jacobian's discriminant. k: zeros; m: axes.
+"""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
-from runtime.program import Claim
-from verifier.topology.claim_at import Scenes
+import numpy as np
+
+from runtime.intervals import Interval, add, exactly, multiply, square, subtract
+from runtime.jet_machine import run_over_boxes
+from runtime.jets import Jet, constant
+from runtime.program import Claim, Program
+from verifier.topology.claim_at import BASIN, Outcome, Scenes
+from verifier.topology.claim_members import POINTS, Fit
+from verifier.topology.features import PointKind
 from verifier.topology.findings import Settings
+from verifier.topology.proof import Proof, prove
+from verifier.topology.slices import Slice, cut
+
+MOST_BOXES: Final = 256
+"""Boxes of controls that one claim is tried on."""
+
+SMALLEST: Final = 2.0**-12
+"""Boxes of this share of the claim's domain are not halved any more."""
+
+BEFORE_PROGRESS: Final = 24
+"""If nothing of the domain is proved after so many boxes, nothing will be."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Covered:
-    """How much of a claim's domain is covered by proof, how, and where it seems to fail."""
+    """How much of a claim's domain is covered by proof, and how.
+
+    failing: settings in the middle of boxes in which the claim is proved to fail.
+    """
 
     share: float
     how: str
     failing: tuple[Settings, ...]
 
 
+@final
+@dataclass(frozen=True, slots=True)
+class _Box:
+    """A box of controls: their lowest and highest values, of those in `names`."""
+
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    share: float
+
+
+NOTHING: Final = Covered(0.0, "", ())
+
+
 def covered_by_proof(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> Covered:
-    """The share of the domain on which the claim is proved."""
-    del scenes, claim, above
-    return Covered(0.0, "", ())
+    """The share of the claim's domain on which it is proved; 1 or 0 where it has no `over`.
+
+    Raises:
+        SliceError: nothing moves, or too much.
+    """
+    if not is_provable(claim):
+        return NOTHING
+    low, high = tuple(s.low for s in claim.over), tuple(s.high for s in claim.over)
+    waiting, proved, tried, about = [_Box(low, high, 1.0)], 0.0, 0, ""
+    while waiting and tried < MOST_BOXES:
+        box = waiting.pop(0)
+        tried += 1
+        prover = _Prover(scenes, claim, box)
+        outcome = prover.outcome(above)
+        about = prover.about
+        if outcome is Outcome.HOLDS:
+            proved += box.share
+        elif outcome is Outcome.FAILS:
+            return Covered(proved, _how(about, claim, proved, tried), (prover.middle,))
+        elif claim.over and box.share > SMALLEST:
+            waiting += _halves(claim, box)
+        if tried > BEFORE_PROGRESS and not proved:
+            break
+    share = 1.0 if not waiting and proved > 1.0 - SMALLEST / 2 else proved
+    return Covered(share, _how(about, claim, share, tried), ())
+
+
+def is_provable(claim: Claim) -> bool:
+    """Whether bounds of the field's zeros can decide the claim.
+
+    Attractors and repellers may be cycles, too, and more of them never do harm to an `at least`.
+    """
+    if claim.feature not in POINTS or claim.feature in {BASIN, "center"}:
+        return False
+    return claim.feature not in {"attractor", "repeller"} or (
+        claim.most is None and not claim.other
+    )
+
+
+def _how(about: str, claim: Claim, share: float, tried: int) -> str:
+    if share == 0.0:
+        return ""
+    by = f"proved by interval arithmetic for {about}"
+    if not claim.over:
+        return by
+    names = ", ".join(span.control for span in claim.over)
+    part = "all" if share == 1.0 else f"{100.0 * share:.3g} %"
+    boxes = "in one piece" if tried == 1 else f"in {tried} pieces"
+    return f"{by}, for {part} of the domain of {names}, {boxes}"
+
+
+def _halves(claim: Claim, box: _Box) -> list[_Box]:
+    """The box, cut in two across its widest side, as a share of the claim's domain."""
+    widths = [
+        (high - low) / (span.high - span.low)
+        for low, high, span in zip(box.low, box.high, claim.over, strict=True)
+    ]
+    i = widths.index(max(widths))
+    middle = 0.5 * (box.low[i] + box.high[i])
+    lower = (*box.high[:i], middle, *box.high[i + 1 :])
+    upper = (*box.low[:i], middle, *box.low[i + 1 :])
+    return [_Box(box.low, lower, box.share / 2), _Box(upper, box.high, box.share / 2)]
+
+
+@final
+class _Prover:
+    """All zeros of the field over one box of controls, beside a claim."""
+
+    def __init__(self, scenes: Scenes, claim: Claim, box: _Box) -> None:
+        self._claim = claim
+        self._program: Program = scenes.program
+        names = [span.control for span in claim.over]
+        middle = [0.5 * (a + b) for a, b in zip(box.low, box.high, strict=True)]
+        self.middle: Settings = (*claim.settings, *zip(names, middle, strict=True))
+        self._view: Slice = cut(self._program, scenes.axes(claim.settings), dict(self.middle))
+        self._controls = np.stack([self._view.u, self._view.u])
+        columns = [control.name for control in self._program.controls]
+        for name, low, high in zip(names, box.low, box.high, strict=True):
+            self._controls[:, columns.index(name)] = low, high
+        self._proof: Proof = prove(self._view, self._controls)
+        self.about = self._proof.about
+
+    def outcome(self, above: tuple[Claim, ...]) -> Outcome:
+        """The claim on the box: whether it holds, or fails, for all controls in it."""
+        known = [claim for claim in above if self._claim.other and claim.feature != BASIN]
+        fits = []
+        for i in range(len(self._proof.zeros)):
+            fit = self._fit(self._claim, i)
+            others = [self._fit(claim, i) for claim in known]
+            if Fit.YES in others:
+                fit = Fit.NO
+            elif Fit.MAYBE in others:
+                fit = min(fit, Fit.MAYBE)
+            fits.append(fit)
+        least = fits.count(Fit.YES)
+        unseen = 0.0 if self._proof.complete else np.inf
+        most = least + fits.count(Fit.MAYBE) + unseen
+        limit = np.inf if self._claim.most is None else self._claim.most
+        if self._claim.least <= least and most <= limit:
+            return Outcome.HOLDS
+        cycles_count = self._claim.feature in {"attractor", "repeller"}
+        if least > limit or (most < self._claim.least and not cycles_count):
+            return Outcome.FAILS
+        return Outcome.OPEN
+
+    def _fit(self, claim: Claim, i: int) -> Fit:
+        """Whether zero i is one of those that a claim speaks of, for all controls of the box."""
+        return min(self._type(claim, i), self._place(claim, i))
+
+    def _type(self, claim: Claim, i: int) -> Fit:
+        wanted = POINTS.get(claim.feature, frozenset())
+        if claim.feature == "fixed point":
+            return Fit.YES
+        possible = self._kinds(i)
+        if possible <= wanted:
+            return Fit.YES
+        return Fit.MAYBE if possible & wanted else Fit.NO
+
+    def _kinds(self, i: int) -> frozenset[PointKind]:
+        """The types that zero i may have."""
+        grows = self._proof.unstable[i]
+        m = self._proof.zeros.shape[1]
+        if grows is None:
+            return frozenset(PointKind)
+        if 0 < grows < m:
+            return frozenset({PointKind.SADDLE} | ({PointKind.UNSTABLE_FOCUS} if m > 2 else set()))
+        turns = _turns(self._proof.slopes, i)
+        node, focus = (
+            (PointKind.STABLE_NODE, PointKind.STABLE_FOCUS)
+            if grows == 0
+            else (PointKind.UNSTABLE_NODE, PointKind.UNSTABLE_FOCUS)
+        )
+        if turns is None:
+            return frozenset({node, focus})
+        return frozenset({focus if turns else node})
+
+    def _place(self, claim: Claim, i: int) -> Fit:
+        """Whether zero i is at the claim's place for all controls of the box."""
+        fit = Fit.YES
+        for place in claim.places:
+            names = [axis.name for axis in self._view.axes]
+            j = names.index(place.state)
+            axis = self._view.axes[j]
+            [jet] = run_over_boxes([place.at], self._register())
+            low, high = float(np.min(jet.value.low)), float(np.max(jet.value.high))
+            off = float(self._proof.zeros[i, j]) - 0.5 * (low + high)
+            if axis.periodic:
+                off -= axis.width * round(off / axis.width)
+            room = float(self._proof.radii[i, j]) + 0.5 * (high - low)
+            if not bool(np.all(jet.sure)):
+                fit = Fit.MAYBE
+                continue
+            if abs(off) - room > place.within:
+                return Fit.NO
+            if not abs(off) + room <= place.within * (1.0 - 1e-12):
+                fit = Fit.MAYBE
+        return fit
+
+    def _register(self) -> dict[str, Jet]:
+        lows, highs = self._controls
+        controls = {
+            control.name: constant(Interval(np.array([low]), np.array([high])))
+            for control, low, high in zip(self._program.controls, lows, highs, strict=True)
+        }
+        constants = {
+            c.name: constant(exactly(np.array([c.value]))) for c in self._program.constants
+        }
+        return {**controls, **constants}
+
+
+def _turns(slopes: Interval, i: int) -> bool | None:
+    """Whether the eigenvalues of zero i are complex; None where that is not certain."""
+    low, high = slopes.low[i], slopes.high[i]
+    if len(low) == 1:
+        return False
+    if len(low) > 2:
+        return None
+
+    def entry(row: int, column: int) -> Interval:
+        return Interval(np.array([low[row, column]]), np.array([high[row, column]]))
+
+    # (a - d)² + 4 b c < 0.
+    skew = multiply(exactly(np.array([4.0])), multiply(entry(0, 1), entry(1, 0)))
+    discriminant = add(square(subtract(entry(0, 0), entry(1, 1))), skew)
+    if float(discriminant.high[0]) < 0.0:
+        return True
+    return False if float(discriminant.low[0]) > 0.0 else None

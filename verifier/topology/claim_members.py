@@ -51,11 +51,6 @@ CYCLES: Final[dict[str, frozenset[Stability]]] = {
 }
 """The stabilities of cycles that each feature takes in."""
 
-BY_STABILITY: Final = frozenset(
-    {"fixed point", "stable fixed point", "unstable fixed point", "saddle", "attractor", "repeller"}
-)
-"""The features that proved stability decides; the others ask whether it turns as well."""
-
 
 @final
 class Fit(IntEnum):
@@ -72,8 +67,7 @@ class Member:
     """A feature of a portrait beside a claim.
 
     index: into the portrait's fixed points or cycles. of_type: whether its type fits; fit: whether
-    everything fits. why: in words what does not, where only a condition fails. proved: that it
-    is there, and that its type fits or does not, follows from interval arithmetic.
+    everything fits. why: in words what does not, where only a condition fails.
     """
 
     is_cycle: bool
@@ -81,7 +75,6 @@ class Member:
     of_type: Fit
     fit: Fit
     why: str
-    proved: bool
 
     @property
     def key(self) -> tuple[bool, int]:
@@ -132,16 +125,12 @@ def values_at(program: Program, codes: tuple[Code, ...], settings: Settings) -> 
 def _point(claim: Claim, conditions: "_Conditions", index: int, point: FixedPoint) -> Member:
     of_type = _type_of_point(claim.feature, point)
     why = conditions.wrong_place(point) if of_type is not Fit.NO else ""
-    proved = point.proved and (
-        claim.feature == "fixed point" or (point.kind_proved and claim.feature in BY_STABILITY)
-    )
     return Member(
         is_cycle=False,
         index=index,
         of_type=of_type,
         fit=Fit.NO if why else of_type,
         why=why,
-        proved=proved,
     )
 
 
@@ -151,7 +140,7 @@ def _cycle(claim: Claim, conditions: "_Conditions", index: int, cycle: Cycle) ->
     if of_type is not Fit.NO:
         why = conditions.wrong_reach(cycle) or conditions.wrong_period(cycle)
     fit = Fit.NO if why or claim.places else of_type
-    return Member(is_cycle=True, index=index, of_type=of_type, fit=fit, why=why, proved=False)
+    return Member(is_cycle=True, index=index, of_type=of_type, fit=fit, why=why)
 
 
 def _type_of_point(feature: str, point: FixedPoint) -> Fit:

@@ -10,6 +10,7 @@ from typing import Final, TypeAlias
 
 from runtime.program import Claim, Program
 from verifier.topology.claim_at import Outcome, Scenes, Verdict, verdict_at
+from verifier.topology.claim_boxes import covered_by_proof
 from verifier.topology.claim_words import settings_words
 from verifier.topology.claims_over import judged_over
 from verifier.topology.findings import Finding, Ruling, Settings, Witness
@@ -55,28 +56,27 @@ RULINGS: Final = {Outcome.FAILS: Ruling.REFUTED, Outcome.OPEN: Ruling.UNDECIDED}
 def _judged_at(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> Finding:
     """A claim at single values of all controls."""
     verdict = verdict_at(scenes, claim, above, claim.settings)
-    proved = verdict.proved and verdict.outcome is Outcome.HOLDS
+    covered = covered_by_proof(scenes, claim, above)
+    proved = covered.share == 1.0 and verdict.outcome is Outcome.HOLDS
     ruling = Ruling.HOLDS_PROVED if proved else Ruling.HOLDS_SAMPLED
     ruling = RULINGS.get(verdict.outcome, ruling)
     return Finding(
         claim=claim,
         ruling=ruling,
         sentence=verdict.sentence,
-        how=_how(scenes, claim, verdict),
+        how=_how(scenes, claim, covered.how if proved else ""),
         proved_share=float(proved),
         witness=_witness(scenes.program, claim, verdict) if not ruling.holds else None,
         boundaries=(),
     )
 
 
-def _how(scenes: Scenes, claim: Claim, verdict: Verdict) -> str:
+def _how(scenes: Scenes, claim: Claim, proof: str) -> str:
+    """How it was shown, and at which values."""
     at = settings_words(scenes.program, claim.settings) or "the controls' defaults"
     if not scenes.program.controls and not claim.settings:
-        at = "the only setting there is"
-    if not verdict.proved:
-        return f"computed at {at}"
-    about = scenes.at(claim.settings, cycles=False, basins=False).completeness.about
-    return f"proved by interval arithmetic for {about or 'the tables'} at {at}"
+        return proof or "computed"
+    return f"{proof or 'computed'} at {at}"
 
 
 def _witness(program: Program, claim: Claim, verdict: Verdict) -> Witness:

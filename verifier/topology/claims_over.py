@@ -3,7 +3,7 @@
 d: number of controls that take all values.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import product
 from typing import Final, TypeAlias, final
 
@@ -39,51 +39,47 @@ NUDGE: Final = 0.00314
 def judged_over(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> Finding:
     """What is found of a claim that holds over a domain of controls, or does not."""
     look = _Look(scenes, claim, above)
-    covered = covered_by_proof(scenes, claim, above)
-    if covered.share == 1.0:
-        sentence = look.at(look.default()).sentence
-        return Finding(claim, Ruling.HOLDS_PROVED, sentence, covered.how, 1.0, None, ())
     settings = look.samples()
-    verdicts = [look.at(one) for one in settings]
-    failing = [s for s, v in zip(settings, verdicts, strict=True) if v.outcome is Outcome.FAILS]
-    failing += [s for s in covered.failing if look.at(s).outcome is Outcome.FAILS]
-    open_ones = [s for s, v in zip(settings, verdicts, strict=True) if v.outcome is Outcome.OPEN]
+    failing = look.those(settings, Outcome.FAILS)
     if failing:
-        return _refuted(look, covered, failing, settings)
-    if open_ones:
-        return _undecided(look, covered, open_ones[0], len(open_ones), len(settings))
-    how = _sampled(claim, covered, len(settings))
+        return _refuted(look, failing, len(settings))
+    covered = covered_by_proof(scenes, claim, above)
     sentence = look.at(look.default()).sentence
+    if covered.share == 1.0:
+        return Finding(claim, Ruling.HOLDS_PROVED, sentence, covered.how, 1.0, None, ())
+    failing = look.those(covered.failing, Outcome.FAILS)
+    if failing:
+        return _refuted(look, failing, len(settings) + 1)
+    undecided = look.those(settings, Outcome.OPEN)
+    if undecided:
+        return _undecided(look, covered, undecided, len(settings))
+    how = _sampled(claim, covered, len(settings))
     return Finding(claim, Ruling.HOLDS_SAMPLED, sentence, how, covered.share, None, ())
 
 
-def _refuted(
-    look: "_Look", covered: Covered, failing: list[Settings], settings: list[Settings]
-) -> Finding:
+def _refuted(look: "_Look", failing: list[Settings], of: int) -> Finding:
     witness = failing[0]
     verdict = look.at(witness)
-    boundaries = look.boundaries(witness)
-    share = f"it fails at {len(failing)} of {len(settings)} settings looked at"
     return Finding(
         claim=look.claim,
         ruling=Ruling.REFUTED,
         sentence=verdict.sentence,
-        how=share,
-        proved_share=covered.share,
+        how=f"it fails at {len(failing)} of {of} settings looked at",
+        proved_share=0.0,
         witness=Witness(look.every_control(witness), verdict.place, verdict.sentence),
-        boundaries=boundaries,
+        boundaries=look.boundaries(witness),
     )
 
 
-def _undecided(look: "_Look", covered: Covered, where: Settings, count: int, of: int) -> Finding:
-    verdict = look.at(where)
+def _undecided(look: "_Look", covered: Covered, where: list[Settings], of: int) -> Finding:
+    verdict = look.at(where[0])
     return Finding(
         claim=look.claim,
         ruling=Ruling.UNDECIDED,
         sentence=verdict.sentence,
-        how=f"{count} of {of} settings looked at are not decided",
+        how=f"{len(where)} of {of} settings looked at are not decided",
         proved_share=covered.share,
-        witness=Witness(look.every_control(where), verdict.place, verdict.sentence),
+        witness=Witness(look.every_control(where[0]), verdict.place, verdict.sentence),
         boundaries=(),
     )
 
@@ -121,6 +117,10 @@ class _Look:
                 verdict = verdict if beside.outcome is Outcome.OPEN else beside
             self._seen[settings] = verdict
         return self._seen[settings]
+
+    def those(self, settings: Iterable[Settings], outcome: Outcome) -> list[Settings]:
+        """The settings at which the claim has this outcome."""
+        return [one for one in settings if self.at(one).outcome is outcome]
 
     def default(self) -> Settings:
         """The defaults of the controls, as far as they lie in the claim's domain."""
