@@ -8,7 +8,6 @@ from compiler.quantities import rate_text
 from runtime.arrays import Array
 from runtime.program import Program, Table, Unit
 from runtime.rollout import Ending, Rollout
-from verifier.topology.features import FixedPoint, Portrait
 
 
 def compile_record(program: Program, path: Path, artifact: bytes) -> dict[str, object]:
@@ -101,32 +100,3 @@ def rollout_summary(program: Program, rollout: Rollout) -> str:
         start, end = first[i] / state.unit.scale, last[i] / state.unit.scale
         rows.append(f"  {state.name:16} {start:14.6g} {end:14.6g}  {state.unit.text}")
     return "\n".join(rows)
-
-
-def portrait_summary(portrait: Portrait) -> str:
-    """The fixed points of a portrait."""
-    axes = ", ".join(axis.name for axis in portrait.axes)
-    held = ", ".join(
-        f"{h.name} = {h.label or f'{h.value / h.unit.scale:g}'}" for h in portrait.held
-    )
-    rows = [f"{portrait.name} over {axes}" + (f", at {held}" if held else "")]
-    if not portrait.fixed_points:
-        rows.append("  no fixed points found")
-    rows += [f"  {_fixed_point(point, portrait)}" for point in portrait.fixed_points]
-    rows += [f"  {note}" for note in portrait.notes]
-    return "\n".join(rows)
-
-
-def _fixed_point(point: FixedPoint, portrait: Portrait) -> str:
-    place = ", ".join(
-        f"{axis.name} = {value / axis.unit.scale + 0.0:.6g}"
-        for axis, value in zip(portrait.axes, point.at.tolist(), strict=True)
-    )
-    values = ", ".join(_complex(value) for value in point.eigenvalues)
-    return f"{point.kind} at {place}; eigenvalues {values}"
-
-
-def _complex(value: complex) -> str:
-    if abs(value.imag) < 1e-12 * max(1.0, abs(value)):
-        return f"{value.real:.6g}"
-    return f"{value.real:.6g} {'+' if value.imag > 0 else '-'} {abs(value.imag):.6g}i"

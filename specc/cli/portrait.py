@@ -49,7 +49,7 @@ def portrait(
 
         print_json(as_json(portrayed))
     else:
-        from specc.printing import portrait_summary
+        from specc.portrait_text import portrait_summary
 
         print_text(portrait_summary(portrayed))
     if output is not None or form is Format.TEXT:

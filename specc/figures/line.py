@@ -1,58 +1,69 @@
 """The portrait of one variable: the rate against the state, or a map's cobweb."""
 
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from runtime.program import Unit
+from specc.figures.areas import ALL, attractor_name
 from specc.figures.axes_of_states import name_x, name_y
-from specc.figures.markers import Entry, mark
-from specc.figures.quantities import axis_label, rate_of
-from specc.figures.style import BLUE, FAINT, INK, VERMILION, bare
-from verifier.topology.features import Portrait
+from specc.figures.legend import Entry, Look, line_entry
+from specc.figures.markers import cross, mark, ring
+from specc.figures.palettes import Palette
+from specc.figures.quantities import axis_label, percent, rate_of
+from specc.figures.style import bare
+from verifier.topology.features import Cycle, Portrait, Standing
+
+DIAGONAL: Final = (0.0, (4.0, 2.0))
 
 
-def draw_line(figure: Figure, portrait: Portrait) -> tuple[Axes, list[Entry]]:
-    """Draws into `figure`; gives its axes and what the legend shows."""
-    axes = figure.add_axes((0.1, 0.1, 0.62, 0.78))
-    return axes, (_cobweb if portrait.every > 0.0 else _phase_line)(axes, portrait)
+def draw_line(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
+    """Draws into `axes`; gives what the legend shows."""
+    draw = _cobweb if portrait.every > 0.0 else _phase_line
+    return [*draw(axes, portrait, palette), *_undecided(axes, portrait, palette)]
 
 
-def _phase_line(axes: Axes, portrait: Portrait) -> list[Entry]:
+def _phase_line(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
     """The rate over the state; arrows on the line of rest say which way it goes."""
     (state,) = portrait.axes
     scale = state.unit.scale
     nodes, rates = portrait.field.nodes[0] / scale, portrait.field.rates[:, 0] / scale
+    color = palette.nullcline
     name_x(axes, state)
     bare(axes)
     axes.set_ylabel(axis_label(rate_of(state.name), _per_second(state.unit)))
-    axes.axhline(0.0, color=INK, linewidth=0.8, zorder=2)
-    axes.plot(nodes, rates, color=BLUE, linewidth=1.8, zorder=3)
-    axes.fill_between(nodes, 0.0, rates, color=BLUE, alpha=0.08, linewidth=0.0, zorder=1)
-    _directions(axes, nodes, rates)
-    at = np.array([[float(p.at[0]) / scale, 0.0] for p in portrait.fixed_points]).reshape(-1, 2)
-    points = mark(axes, at, [p.kind for p in portrait.fixed_points])
-    rate = Line2D([], [], color=BLUE, linewidth=1.8, label=rate_of(state.name))
-    arrow = Line2D([], [], color=INK, marker=">", markersize=5.0, linewidth=0.8)
-    arrow.set_label("where it goes")
-    return [*points, (rate,), (arrow,)]
+    axes.axhline(0.0, color=palette.ink, linewidth=0.8, zorder=2)
+    axes.plot(nodes, rates, color=color, linewidth=1.8, zorder=3)
+    basins = _basins(axes, portrait, palette)
+    if not basins:
+        axes.fill_between(nodes, 0.0, rates, color=color, alpha=0.08, linewidth=0.0, zorder=1)
+    _directions(axes, nodes, rates, palette)
+    points = _points(axes, portrait, palette, on_diagonal=False)
+    goes: Look = {"marker": ">", "markersize": 5.0, "linewidth": 0.8, "color": palette.ink}
+    return [
+        *points,
+        line_entry(rate_of(state.name), color=color, linewidth=1.8),
+        line_entry("where it goes", **goes),
+        *basins,
+    ]
 
 
-def _directions(axes: Axes, nodes: Array, rates: Array) -> None:
+def _directions(axes: Axes, nodes: Array, rates: Array, palette: Palette) -> None:
     """An arrowhead in the middle of each stretch in which the rate keeps its sign."""
     sign = np.sign(np.nan_to_num(rates))
     edges = np.flatnonzero(np.diff(np.concatenate([[0.0], sign, [0.0]])))
     for a, b in pairwise(edges):
         if sign[a] and b - a > 0.02 * len(nodes):
             middle = 0.5 * (nodes[a] + nodes[b - 1])
-            axes.plot(middle, 0.0, ">" if sign[a] > 0 else "<", color=INK, markersize=6.0, zorder=4)
+            shape = ">" if sign[a] > 0 else "<"
+            axes.plot(middle, 0.0, shape, color=palette.ink, markersize=6.0, zorder=4)
 
 
-def _cobweb(axes: Axes, portrait: Portrait) -> list[Entry]:
+def _cobweb(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
     """The next value over the value; orbits bounce between the curve and the diagonal."""
     (state,) = portrait.axes
     scale = state.unit.scale
@@ -61,25 +72,89 @@ def _cobweb(axes: Axes, portrait: Portrait) -> list[Entry]:
     name_x(axes, state)
     name_y(axes, state)
     axes.set_ylabel(axis_label(f"next {state.name}", state.unit))
-    axes.set_aspect("equal", adjustable="box", anchor="NW")
     ends = (state.low / scale, state.high / scale)
-    axes.plot(ends, ends, color=FAINT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2)
-    axes.plot(nodes, following, color=BLUE, linewidth=1.8, zorder=3)
+    axes.plot(ends, ends, color=palette.faint, linewidth=0.9, linestyle=DIAGONAL, zorder=2)
+    axes.plot(nodes, following, color=palette.nullcline, linewidth=1.8, zorder=3)
     for path in portrait.trajectories[:2]:
-        axes.plot(*_web(path.points[:, 0] / scale), color=VERMILION, linewidth=0.7, zorder=4)
-    at = np.array([[float(p.at[0]) / scale] * 2 for p in portrait.fixed_points]).reshape(-1, 2)
+        axes.plot(*_web(path.points[:, 0] / scale), color=palette.path, linewidth=0.6, zorder=4)
+    cycles = [_square(axes, cycle, scale, palette) for cycle in portrait.cycles]
     return [
-        *mark(axes, at, [p.kind for p in portrait.fixed_points]),
-        (Line2D([], [], color=BLUE, linewidth=1.8, label=f"next {state.name}"),),
-        (Line2D([], [], color=FAINT, linestyle=(0, (4, 2)), label="stays where it is"),),
-        (Line2D([], [], color=VERMILION, linewidth=0.7, label="orbit"),),
+        *_points(axes, portrait, palette, on_diagonal=True),
+        *cycles,
+        line_entry(f"next {state.name}", color=palette.nullcline, linewidth=1.8),
+        line_entry("stays where it is", color=palette.faint, linestyle=DIAGONAL),
+        line_entry("orbit", color=palette.path, linewidth=0.6),
     ]
+
+
+def _square(axes: Axes, cycle: Cycle, scale: float, palette: Palette) -> Entry:
+    """The closed web of a periodic orbit."""
+    dashes = "-" if cycle.is_attracting else (0.0, (3.2, 1.6))
+    look: Look = {"color": palette.cycle, "linewidth": 1.8, "linestyle": dashes}
+    values = cycle.points[:, 0] / scale
+    axes.plot(*_web(np.append(values, values[1])), zorder=5, **look)
+    return line_entry(f"{cycle.stability} orbit of period {len(values) - 1}", **look)
 
 
 def _web(values: Array) -> tuple[Array, Array]:
     """The corners of the cobweb of successive `values` (T,)."""
     x = np.repeat(values, 2)
     return x[:-1], x[1:]
+
+
+def _points(axes: Axes, portrait: Portrait, palette: Palette, *, on_diagonal: bool) -> list[Entry]:
+    scale = portrait.axes[0].unit.scale
+    invented = [p.standing is Standing.INVENTED for p in portrait.fixed_points]
+    at = _on_paper(
+        np.array([p.at[0] / scale for p in portrait.fixed_points]), on_diagonal=on_diagonal
+    )
+    lost = _on_paper(portrait.completeness.lost[:, 0] / scale, on_diagonal=on_diagonal)
+    return [
+        *mark(axes, at, [p.kind for p in portrait.fixed_points], palette),
+        *ring(axes, at[np.array(invented, dtype=bool)], palette),
+        *cross(axes, lost, palette),
+    ]
+
+
+def _on_paper(values: Array, *, on_diagonal: bool) -> Array:
+    return np.stack([values, values if on_diagonal else np.zeros_like(values)], axis=-1)
+
+
+def _basins(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
+    """Tinted stretches of the state, one tint an attractor."""
+    basins = portrait.basins
+    if basins is None or max((a.share for a in basins.attractors), default=1.0) > ALL:
+        return []
+    (state,) = portrait.axes
+    labels = basins.labels
+    edges = np.linspace(state.low, state.high, len(labels) + 1) / state.unit.scale
+    breaks = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), len(labels)]
+    for a, b in pairwise(breaks):
+        if labels[a] >= 0:
+            color = palette.tints[int(labels[a]) % len(palette.tints)]
+            axes.axvspan(edges[a], edges[b], color=color, linewidth=0.0, zorder=0)
+    return [
+        Entry(
+            f"goes to {attractor_name(portrait, a)}: {percent(a.share)}",
+            (Patch(facecolor=palette.tints[k % len(palette.tints)], edgecolor=palette.faint),),
+        )
+        for k, a in enumerate(basins.attractors)
+    ]
+
+
+def _undecided(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
+    scale = portrait.axes[0].unit.scale
+    look: Look = {
+        "facecolor": "none",
+        "edgecolor": palette.alarm,
+        "hatch": "//////",
+        "linewidth": 0.0,
+    }
+    for box in portrait.completeness.undecided:
+        axes.axvspan(float(box.low[0]) / scale, float(box.high[0]) / scale, zorder=1, **look)
+    if not portrait.completeness.undecided:
+        return []
+    return [Entry("undecided: may hold fixed points", (Patch(**look),))]
 
 
 def _per_second(unit: Unit) -> Unit:

@@ -11,13 +11,21 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from runtime.arrays import Array
-from specc.figures.style import INK, PAPER
+from specc.figures.legend import Entry, Look, line_entry
+from specc.figures.palettes import Palette
 from verifier.topology.features import PointKind
 
 Fill: TypeAlias = Literal["full", "left", "none"]
 
-Entry: TypeAlias = tuple[Line2D, ...]
-"""What stands for one thing in a legend: lines drawn upon each other; the first has the label."""
+SHAPES: Final[dict[PointKind, tuple[str, Fill, float]]] = {
+    PointKind.STABLE_NODE: ("o", "full", 8.0),
+    PointKind.UNSTABLE_NODE: ("o", "none", 8.0),
+    PointKind.STABLE_FOCUS: ("s", "full", 7.2),
+    PointKind.UNSTABLE_FOCUS: ("s", "none", 7.2),
+    PointKind.SADDLE: ("D", "left", 7.4),
+    PointKind.CENTER: ("o", "none", 8.5),
+    PointKind.DEGENERATE: ("o", "left", 8.5),
+}
 
 DOT: Final = 2.6
 """The size of the dot in a center."""
@@ -35,39 +43,66 @@ class Marker(TypedDict):
     markeredgewidth: float
 
 
-def _marker(shape: str, fill: Fill, size: float) -> Marker:
+def marker(kind: PointKind, palette: Palette, weight: float = 1.0) -> Marker:
+    """The mark of a kind of fixed point."""
+    shape, fill, size = SHAPES[kind]
     return Marker(
         marker=shape,
         fillstyle="left" if fill == "left" else "full",
-        markersize=size,
-        markerfacecolor=PAPER if fill == "none" else INK,
-        markerfacecoloralt=PAPER,
-        markeredgecolor=INK,
-        markeredgewidth=1.3,
+        markersize=weight * size,
+        markerfacecolor=palette.paper if fill == "none" else palette.ink,
+        markerfacecoloralt=palette.paper,
+        markeredgecolor=palette.ink,
+        markeredgewidth=1.3 * weight,
     )
 
 
-MARKERS: Final[dict[PointKind, Marker]] = {
-    PointKind.STABLE_NODE: _marker("o", "full", 8.0),
-    PointKind.UNSTABLE_NODE: _marker("o", "none", 8.0),
-    PointKind.STABLE_FOCUS: _marker("s", "full", 7.2),
-    PointKind.UNSTABLE_FOCUS: _marker("s", "none", 7.2),
-    PointKind.SADDLE: _marker("D", "left", 7.4),
-    PointKind.CENTER: _marker("o", "none", 8.5),
-    PointKind.DEGENERATE: _marker("o", "left", 8.5),
-}
-
-
-def mark(axes: Axes, at: Array, kinds: Sequence[PointKind]) -> list[Entry]:
+def mark(
+    axes: Axes, at: Array, kinds: Sequence[PointKind], palette: Palette, weight: float = 1.0
+) -> list[Entry]:
     """Marks the points `at` (k, 2), above everything else, and returns what the legend shows."""
     for point, kind in zip(at, kinds, strict=True):
-        axes.plot(*point, linestyle="none", clip_on=False, zorder=10, **MARKERS[kind])
+        look = marker(kind, palette, weight)
+        axes.plot(*point, linestyle="none", clip_on=False, zorder=10, **look)
         if kind is PointKind.CENTER:
-            axes.plot(*point, "o", color=INK, markersize=DOT, clip_on=False, zorder=11)
-    return [_entry(kind) for kind in PointKind if kind in kinds]
+            dot = weight * DOT
+            axes.plot(*point, "o", color=palette.ink, markersize=dot, clip_on=False, zorder=11)
+    return [_entry(kind, palette) for kind in PointKind if kind in kinds]
 
 
-def _entry(kind: PointKind) -> Entry:
-    marker = Line2D([], [], linestyle="none", label=str(kind), **MARKERS[kind])
-    dot = Line2D([], [], linestyle="none", marker="o", color=INK, markersize=DOT)
-    return (marker, dot) if kind is PointKind.CENTER else (marker,)
+def ring(axes: Axes, at: Array, palette: Palette, weight: float = 1.0) -> list[Entry]:
+    """Rings around the points `at` (k, 2): the interpolation invented them."""
+    look: Look = {
+        "linestyle": "none",
+        "marker": "o",
+        "markersize": 14.0 * weight,
+        "markerfacecolor": "none",
+        "markeredgecolor": palette.alarm,
+        "markeredgewidth": 1.4 * weight,
+    }
+    if not len(at):
+        return []
+    axes.plot(*at.T, clip_on=False, zorder=9, **look)
+    return [line_entry("invented by the tables", **look | {"markersize": 11.0})]
+
+
+def cross(axes: Axes, at: Array, palette: Palette, weight: float = 1.0) -> list[Entry]:
+    """Crosses at the places `at` (k, 2): fixed points of the formula that the tables lost."""
+    look: Look = {
+        "linestyle": "none",
+        "marker": "X",
+        "markersize": 8.5 * weight,
+        "markerfacecolor": palette.paper,
+        "markeredgecolor": palette.alarm,
+        "markeredgewidth": 1.3 * weight,
+    }
+    if not len(at):
+        return []
+    axes.plot(*at.T, clip_on=False, zorder=9, **look)
+    return [line_entry("of the formula, lost by the tables", **look)]
+
+
+def _entry(kind: PointKind, palette: Palette) -> Entry:
+    first = Line2D([], [], linestyle="none", **marker(kind, palette))
+    dot = Line2D([], [], linestyle="none", marker="o", color=palette.ink, markersize=DOT)
+    return Entry(str(kind), (first, dot) if kind is PointKind.CENTER else (first,))

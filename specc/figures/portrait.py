@@ -1,54 +1,56 @@
-"""Phase portraits: a plane for two axes, a phase line or a cobweb for one."""
+"""Phase portraits: a plane for two axes, a phase line or a cobweb for one, a box for three."""
 
-import textwrap
 from typing import Final
 
+import numpy as np
 from matplotlib.figure import Figure
 
+from specc.figures.axes_of_states import same_scale
+from specc.figures.legend import draw_legend
 from specc.figures.line import draw_line
+from specc.figures.palettes import PALETTES, Style
+from specc.figures.panel import Panel
+from specc.figures.paper import (
+    BELOW,
+    LEFT,
+    LEGEND,
+    LINE,
+    axes_at,
+    heading,
+    held_text,
+    new_figure,
+    panel_size,
+    write_heading,
+)
 from specc.figures.plane import draw_plane
-from specc.figures.quantities import quantity
-from specc.figures.style import FAINT, look
-from verifier.topology.features import Held, Portrait
+from specc.figures.style import look
+from specc.portrait_text import proof_sentences
+from verifier.topology.features import Portrait
 
-WIDTH: Final = 7.4
-HEIGHT: Final = 5.4
+MOST: Final = (4.7, 4.3)
+"""The size of the one panel of a portrait, in inches, at most."""
 
 
-def draw_portrait(portrait: Portrait) -> Figure:
+def draw_portrait(portrait: Portrait, style: Style = Style.SCREEN) -> Figure:
     """The portrait as a figure: SVG, PNG and PDF come of it by `style.rendered`."""
-    with look():
-        figure = Figure(figsize=(WIDTH, HEIGHT))
-        if len(portrait.axes) == 2:
-            axes, legend = draw_plane(figure, portrait)
+    palette = PALETTES[style]
+    planar = len(portrait.axes) == 2
+    keep = same_scale(portrait.axes) if planar else portrait.every > 0.0
+    size = panel_size((*portrait.axes, *portrait.axes)[:2], MOST, same_scale=keep)
+    about = [portrait.about] if portrait.about else []
+    held = [held_text(portrait.held)] if portrait.held else []
+    small = [*proof_sentences(portrait), *portrait.notes]
+    text = heading(portrait.name, [*about, *held], small, size[0] + LEGEND)
+    below = BELOW + LINE * len(text.below)
+    with look(palette):
+        figure = new_figure(LEFT + size[0] + LEGEND, below + size[1] + text.height + 0.1, palette)
+        axes = axes_at(figure, (LEFT, below), size)
+        axes.set_facecolor(palette.paper)
+        if planar:
+            legend = draw_plane(Panel(axes, portrait.axes, palette, np.array(size)), portrait)
         else:
-            axes, legend = draw_line(figure, portrait)
-        axes.legend(
-            handles=legend,
-            labels=[str(entry[0].get_label()) for entry in legend],
-            loc="upper left",
-            bbox_to_anchor=(1.03, 1.0),
-            borderaxespad=0.0,
-        )
-        _title(figure, portrait)
-        _notes(figure, portrait)
+            legend = draw_line(axes, portrait, palette)
+        draw_legend(axes, legend, (1.0 + 0.18 / size[0], 1.0))
+        top = below + size[1] + text.height
+        write_heading(figure, text, palette, LEFT, top, below - BELOW + 0.05)
     return figure
-
-
-def _title(figure: Figure, portrait: Portrait) -> None:
-    """The name, and below it what is held at which values."""
-    figure.text(0.1, 0.955, portrait.name, fontsize=12.5, fontweight="bold", va="center")
-    lines = textwrap.wrap(", ".join(map(_held, portrait.held)), 92)
-    shown = lines if len(lines) < 3 else [lines[0], lines[1] + " …"]
-    figure.text(0.1, 0.928, "\n".join(shown), fontsize=8.5, color=FAINT, va="top")
-
-
-def _notes(figure: Figure, portrait: Portrait) -> None:
-    """What a reader must know beside the picture, below it."""
-    lines = [line for note in portrait.notes for line in textwrap.wrap(note, 92)]
-    if lines:
-        figure.text(0.1, 0.012, "\n".join(lines), fontsize=8.5, color=FAINT, va="top")
-
-
-def _held(held: Held) -> str:
-    return f"{held.name} = {held.label or quantity(held.value, held.unit)}"

@@ -4,6 +4,7 @@ Colours are Okabe and Ito's (2008), which people with colour-blindness tell apar
 colour says, a line style or a marker says too.
 """
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO
@@ -13,6 +14,8 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
+
+from specc.figures.palettes import SCREEN, Palette
 
 INK: Final = "#1b1f24"
 FAINT: Final = "#6b7480"
@@ -54,6 +57,7 @@ LOOK: Final[dict[Any, Any]] = {
     "ytick.direction": "out",
     "xtick.major.width": 0.8,
     "ytick.major.width": 0.8,
+    "hatch.linewidth": 0.7,
     "legend.frameon": False,
     "legend.handlelength": 2.2,
     "svg.fonttype": "path",
@@ -64,6 +68,12 @@ LOOK: Final[dict[Any, Any]] = {
     "text.parse_math": False,
 }
 
+DIGITS: Final = re.compile(rb"(\.\d\d)\d+")
+"""Digits behind the second one."""
+
+INKED: Final = ("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color")
+"""The settings that follow a palette's ink."""
+
 METADATA: Final[dict[str, dict[str, str | None]]] = {
     "svg": {"Date": None, "Creator": "specc"},
     "pdf": {"CreationDate": None, "Creator": "specc", "Producer": "specc"},
@@ -72,16 +82,17 @@ METADATA: Final[dict[str, dict[str, str | None]]] = {
 
 
 @contextmanager
-def look() -> Iterator[None]:
+def look(palette: Palette = SCREEN) -> Iterator[None]:
     """Within it figures are made and saved in this style; afterwards nothing has changed."""
-    with mpl.rc_context(LOOK):
+    colors: dict[Any, Any] = dict.fromkeys(INKED, palette.ink)
+    with mpl.rc_context(LOOK | colors | dict(palette.settings)):
         yield
 
 
-def rendered(figure: Figure, form: Format, dpi: int = 180) -> bytes:
+def rendered(figure: Figure, form: Format, palette: Palette = SCREEN, dpi: int = 180) -> bytes:
     """The picture as a file's bytes, cropped to what is drawn; equal numbers give equal bytes."""
     buffer = BytesIO()
-    with look():
+    with look(palette):
         figure.savefig(
             buffer,
             format=form,
@@ -90,7 +101,13 @@ def rendered(figure: Figure, form: Format, dpi: int = 180) -> bytes:
             bbox_inches="tight",
             pad_inches=0.08,
         )
-    return buffer.getvalue()
+    data = buffer.getvalue()
+    return _shortened(data) if form == "svg" else data
+
+
+def _shortened(svg: bytes) -> bytes:
+    """Outlines in hundredths of a point: finer is only bytes."""
+    return re.sub(rb' d="[^"]*"', lambda d: DIGITS.sub(rb"\1", d[0]), svg)
 
 
 def rendered_svg(figure: Figure) -> str:

@@ -1,0 +1,210 @@
+"""Curves of a portrait: nullclines, trajectories, separatrices, cycles and switching lines.
+
+What a curve is, its colour and its dashes both say; of cycles the dashes say whether they attract.
+"""
+
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Final, Literal, TypeAlias, final
+
+import numpy as np
+
+from runtime.arrays import Array
+from specc.figures.legend import Entry, Look, line_entry
+from specc.figures.panel import Panel, draw_heads, places_along
+from specc.figures.quantities import rate_of
+from verifier.topology.features import Cycle, Portrait, Stability
+
+Dashes: TypeAlias = tuple[float, tuple[float, ...]] | Literal["-"]
+
+NULLCLINE_DASHES: Final[tuple[Dashes, Dashes]] = ((0.0, (7.0, 2.2)), (0.0, (1.4, 1.6)))
+
+CYCLE_DASHES: Final[MappingProxyType[Stability, Dashes]] = MappingProxyType(
+    {
+        Stability.STABLE: "-",
+        Stability.UNSTABLE: (0.0, (3.2, 1.6)),
+        Stability.SADDLE: (0.0, (1.0, 1.3)),
+        Stability.SEMI_STABLE: (0.0, (5.0, 1.4, 1.0, 1.4)),
+        Stability.NEUTRAL: "-",
+    }
+)
+CYCLE_WIDTH: Final = 2.5
+NEUTRAL_WIDTH: Final = 1.3
+
+MANIFOLD_WIDTH: Final = 1.7
+
+HEAD: Final = 0.115
+"""The length of an arrowhead on a curve, in inches."""
+
+APART: Final = 2.2
+"""How far apart arrowheads stand along a curve, in inches."""
+
+CLEAR: Final = 0.7
+"""How far an arrowhead stays from those of other curves of its kind, in inches."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """How a curve is drawn: colour, dashes, width in points."""
+
+    color: str
+    dashes: Dashes
+    width: float
+
+    @property
+    def look(self) -> Look:
+        """The same for matplotlib."""
+        return {"color": self.color, "linestyle": self.dashes, "linewidth": self.width}
+
+    def scaled(self, weight: float) -> "Stroke":
+        """The stroke in a small panel."""
+        return replace(self, width=weight * self.width)
+
+
+def draw_nullclines(panel: Panel, portrait: Portrait) -> list[Entry]:
+    """Where one variable's rate is zero."""
+    entries = []
+    names = [axis.name for axis in portrait.axes]
+    for nullcline in portrait.nullclines:
+        if not nullcline.lines:
+            continue
+        name = nullcline.of
+        stroke = Stroke(panel.palette.nullcline, NULLCLINE_DASHES[names.index(name)], 1.3)
+        for line in nullcline.lines:
+            look = stroke.scaled(panel.weight).look
+            panel.axes.plot(*panel.shown(line).T, zorder=3, **look)
+        is_map = portrait.every > 0.0
+        label = f"next {name} = {name}" if is_map else f"{rate_of(name)} = 0"
+        entries.append(line_entry(label, **stroke.look))
+    return entries
+
+
+def draw_trajectories(panel: Panel, portrait: Portrait) -> list[Entry]:
+    """A few trajectories; of a map its orbits, as dots."""
+    if not portrait.trajectories:
+        return []
+    color = panel.palette.path
+    if portrait.every > 0.0:
+        look: Look = {"linestyle": "none", "marker": "o", "color": color, "markeredgewidth": 0.0}
+        for path in portrait.trajectories:
+            points = panel.shown(path.points)
+            panel.axes.plot(*points.T, markersize=2.2 * panel.weight, zorder=4, **look)
+        return [line_entry("orbit", markersize=2.8, **look)]
+    stroke, heads = Stroke(color, "-", 0.9), list[Array]()
+    for path in portrait.trajectories:
+        draw_path(panel, path.points, stroke, 4.0, heads)
+    return [line_entry("trajectory", **stroke.look)]
+
+
+def draw_separatrices(panel: Panel, portrait: Portrait) -> list[Entry]:
+    """Stable and unstable manifolds of the saddles."""
+    palette = panel.palette
+    strokes = {
+        True: Stroke(palette.stable, "-", MANIFOLD_WIDTH),
+        False: Stroke(palette.unstable, (0.0, (6.0, 1.6, 1.2, 1.6)), MANIFOLD_WIDTH),
+    }
+    heads: list[Array] = []
+    for branch in portrait.separatrices:
+        draw_path(panel, branch.points, strokes[branch.stable], 5.0, heads)
+    present = {branch.stable for branch in portrait.separatrices}
+    names = {True: "stable manifold", False: "unstable manifold"}
+    return [line_entry(names[s], **strokes[s].look) for s in (True, False) if s in present]
+
+
+def draw_cycles(panel: Panel, portrait: Portrait) -> list[Entry]:
+    """Closed trajectories: stable solid, unstable dashed; of a map, the points of its orbits."""
+    draw = _draw_orbit_of_map if portrait.every > 0.0 else _draw_cycle
+    return [draw(panel, cycle) for cycle in portrait.cycles]
+
+
+def _draw_cycle(panel: Panel, cycle: Cycle) -> Entry:
+    width = NEUTRAL_WIDTH if cycle.stability is Stability.NEUTRAL else CYCLE_WIDTH
+    stroke = Stroke(panel.palette.cycle, CYCLE_DASHES[cycle.stability], width)
+    leap = Stroke(panel.palette.cycle, (0.0, (0.6, 1.6)), 0.6 * width)
+    heads: list[Array] = []
+    for piece in _between_jumps(cycle):
+        draw_path(panel, piece, stroke, 6.0, heads)
+    for jump in _jumps(cycle):
+        draw_path(panel, jump, leap, 6.0, heads)
+    return line_entry(f"{cycle.stability} cycle", **stroke.look)
+
+
+def _draw_orbit_of_map(panel: Panel, cycle: Cycle) -> Entry:
+    palette = panel.palette
+    look: Look = {
+        "linestyle": "none",
+        "marker": "h",
+        "markeredgecolor": palette.cycle,
+        "markerfacecolor": palette.cycle if cycle.is_attracting else palette.paper,
+    }
+    points = panel.shown(cycle.points[:-1])
+    panel.axes.plot(*points.T, markersize=6.5 * panel.weight, zorder=6, **look)
+    label = f"{cycle.stability} orbit of period {len(cycle.points) - 1}"
+    return line_entry(label, markersize=6.5, **look)
+
+
+def jump_indices(cycle: Cycle) -> list[int]:
+    """After which points a cycle through modes jumps: the mode changes and the place does, too."""
+    modes = np.array(cycle.modes)
+    if not modes.size:
+        return []
+    reach = np.ptp(cycle.points, axis=0).max()
+    leap = np.abs(np.diff(cycle.points, axis=0)).max(axis=-1) > 0.01 * reach
+    still = np.diff(cycle.times) <= 1e-9 * cycle.period
+    return [int(k) for k in np.flatnonzero(leap & still)]
+
+
+def _between_jumps(cycle: Cycle) -> list[Array]:
+    ends = [k + 1 for k in jump_indices(cycle)]
+    return [piece for piece in np.split(cycle.points, ends) if len(piece) > 1]
+
+
+def _jumps(cycle: Cycle) -> list[Array]:
+    return [np.linspace(cycle.points[k], cycle.points[k + 1], 9) for k in jump_indices(cycle)]
+
+
+def draw_switching(panel: Panel, portrait: Portrait) -> list[Entry]:
+    """Where the mode that is shown is left: lines of the guards."""
+    entries = []
+    for number, switching in enumerate(portrait.switching):
+        dashes = (0.0, (5.0, 1.2) if number % 2 == 0 else (2.0, 1.2))
+        stroke = Stroke(panel.palette.switch, dashes, 1.8)
+        for line in switching.lines:
+            look = stroke.scaled(panel.weight).look
+            panel.axes.plot(*panel.shown(line).T, zorder=5.5, **look)
+        if switching.lines:
+            label = f"{switching.mode} switches to {switching.target}"
+            entries.append(line_entry(label, **stroke.look))
+    return entries
+
+
+def draw_path(
+    panel: Panel,
+    points: Array,
+    stroke: Stroke,
+    zorder: float,
+    heads: list[Array],
+) -> None:
+    """A path (T, 2) in the direction of time, cut at seams, with arrowheads along it.
+
+    heads: where arrowheads of its kind stand already, in inches; new ones are added, and keep
+    away from them.
+    """
+    places, directions = [], []
+    for piece in panel.pieces(points):
+        panel.axes.plot(*panel.shown(piece).T, zorder=zorder, **stroke.scaled(panel.weight).look)
+        inches = panel.inches(piece)
+        for k in places_along(inches, APART).tolist():
+            direction = inches[k + 1] - inches[k - 1]
+            if np.any(direction) and _is_far(inches[k], heads, CLEAR * panel.weight):
+                places.append(inches[k])
+                directions.append(direction)
+                heads.append(inches[k])
+    size = HEAD * panel.weight * (0.7 + 0.2 * stroke.width)
+    at, along = np.array(places).reshape(-1, 2), np.array(directions).reshape(-1, 2)
+    draw_heads(panel, at, along, size, stroke.color, zorder + 0.1)
+
+
+def _is_far(place: Array, others: list[Array], distance: float) -> bool:
+    return all(np.hypot(*(place - other)) > distance for other in others)
