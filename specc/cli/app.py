@@ -9,6 +9,7 @@ from typer.exceptions import TyperException
 import specc
 from spec_schema.diagnostics import SpecError
 from specc.cli.check import check
+from specc.cli.compare import compare
 from specc.cli.compile import compile_
 from specc.cli.console import say, show_diagnostics
 from specc.cli.init import init
@@ -56,6 +57,7 @@ app.command("check")(check)
 app.command("compile")(compile_)
 app.command("simulate")(simulate)
 app.command("portrait")(portrait)
+app.command("compare")(compare)
 app.command("verify")(verify)
 app.command("schema")(schema)
 

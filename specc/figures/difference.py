@@ -1,0 +1,122 @@
+"""Where two behaviors differ: a map of the largest difference, and the features of both."""
+
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from specc.comparison_text import verdict_text
+from specc.figures.axes_of_states import name_x, name_y, same_scale, shown
+from specc.figures.legend import Entry, draw_legend, line_entry
+from specc.figures.palettes import PALETTES, Palette, Style
+from specc.figures.paper import (
+    BELOW,
+    LEFT,
+    LEGEND,
+    LINE,
+    axes_at,
+    heading,
+    new_figure,
+    panel_size,
+    write_heading,
+)
+from specc.figures.style import look
+from verifier.topology.comparison import Comparison
+from verifier.topology.matching import Fate
+
+MOST: Final = (4.7, 4.3)
+"""The size of the panel in inches, at most."""
+
+LEVELS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Between the colours, in units of what is allowed."""
+
+WORDS: Final = (
+    "less than a quarter of what is allowed",
+    "less than half of it",
+    "within tolerance",
+    "up to twice what is allowed",
+    "up to four times as much",
+    "more",
+)
+
+COLOURS: Final = ("#ffffff", "#e8f0f8", "#c9dcef", "#fbd9a6", "#f0a35e", "#c9552d")
+"""Blue where it is allowed, orange where it is not; darker is more."""
+
+MARKS: Final = {Fate.SAME: "o", Fate.MOVED: "^", Fate.CHANGED: "D", Fate.MISSING: "X"}
+
+
+def draw_difference(comparison: Comparison) -> Figure:
+    """The map over two axes; over one the difference as a curve."""
+    palette = PALETTES[Style.SCREEN]
+    planar = len(comparison.axes) == 2
+    keep = planar and same_scale(comparison.axes)
+    size = panel_size((*comparison.axes, *comparison.axes)[:2], MOST, same_scale=keep)
+    title = f"{comparison.found} held against {comparison.wanted}"
+    text = heading(title, [verdict_text(comparison)], [], size[0] + LEGEND)
+    below = BELOW + LINE
+    with look(palette):
+        figure = new_figure(LEFT + size[0] + LEGEND, below + size[1] + text.height + 0.1, palette)
+        axes = axes_at(figure, (LEFT, below), size)
+        entries = (_map if planar else _curve)(axes, comparison, palette)
+        draw_legend(axes, entries, (1.0 + 0.18 / size[0], 1.0))
+        write_heading(figure, text, palette, LEFT, below + size[1] + text.height, 0.05)
+    return figure
+
+
+def _map(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:
+    x, y = comparison.axes
+    name_x(axes, x)
+    name_y(axes, y)
+    level = np.digitize(comparison.worst, LEVELS, right=True)
+    extent = tuple(value / a.unit.scale for a in (x, y) for value in (a.low, a.high))
+    axes.imshow(
+        level.T,
+        cmap=ListedColormap(COLOURS),
+        vmin=-0.5,
+        vmax=len(COLOURS) - 0.5,
+        origin="lower",
+        extent=(extent[0], extent[1], extent[2], extent[3]),
+        aspect="auto",
+        zorder=0,
+    )
+    present = np.unique(level)
+    entries = [
+        Entry(WORDS[k], (Patch(facecolor=COLOURS[k], edgecolor=palette.faint, linewidth=0.5),))
+        for k in present
+    ]
+    return [*_features(axes, comparison, palette), *entries]
+
+
+def _features(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:
+    """A mark at each feature by what became of it, and where it should be."""
+    entries: list[Entry] = []
+    for feature in comparison.features:
+        at = shown(comparison.axes, feature.at)
+        good = feature.fate is Fate.SAME
+        style: dict[str, Any] = {
+            "marker": MARKS.get(feature.fate, "P"),
+            "markersize": 8.0,
+            "linestyle": "none",
+            "markerfacecolor": palette.paper if good else palette.alarm,
+            "markeredgecolor": palette.ink,
+            "zorder": 10,
+        }
+        axes.plot(*at, clip_on=False, **style)
+        entries.append(line_entry(f"{feature.wanted or feature.found}: {feature.fate}", **style))
+    return entries
+
+
+def _curve(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:
+    (x,) = comparison.axes[:1]
+    name_x(axes, x)
+    axes.set_ylabel("difference / allowed")
+    axes.plot(comparison.nodes[0] / x.unit.scale, comparison.worst, color=palette.cycle)
+    axes.axhline(1.0, color=palette.faint, linestyle="--")
+    axes.set_xlim(x.low / x.unit.scale, x.high / x.unit.scale)
+    return [
+        line_entry("difference", color=palette.cycle),
+        line_entry("allowed", color=palette.faint, linestyle="--"),
+    ]
