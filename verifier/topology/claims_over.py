@@ -141,7 +141,7 @@ class _Look:
             shares = np.vstack([corners, _spread(len(spans), MORE_SAMPLES[self._kind])])
         low = np.array([span.low for span in spans])
         high = np.array([span.high for span in spans])
-        values = low + shares * (high - low)
+        values = np.clip(low + shares * (high - low), low, high)
         found = [self.default(), *(self._settings(row) for row in values.tolist())]
         return list(dict.fromkeys(found))
 
