@@ -20,6 +20,9 @@ from verifier.topology.findings import Settings
 from verifier.topology.portrait import Detail, portrait
 
 BASIN: Final = "basin"
+NODES: Final = 33
+"""Per axis of the sampled field, which no claim is about."""
+
 CELLS: Final = {1: 1024, 2: 96, 3: 24, 4: 10}
 """Cells per axis of a basin, by the number of axes."""
 
@@ -75,6 +78,7 @@ class Scenes:
             return self._made[settings, cycles, basins]
         axes = self.axes(settings)
         detail = Detail(
+            plane=NODES,
             trajectories=0,
             cycles=cycles,
             separatrices=False,

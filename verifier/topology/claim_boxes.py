@@ -5,6 +5,7 @@ those that a claim counts is the same for the whole box, the claim is decided th
 box is halved. Whether a point turns is decided by its Jacobian's discriminant. k: zeros; m: axes.
 """
 
+from collections import deque
 from dataclasses import dataclass
 from itertools import product
 from typing import Final, final
@@ -25,11 +26,11 @@ from verifier.topology.slices import Slice, cut
 PIECES: Final = {1: 16, 2: 8, 3: 4, 4: 3}
 """Pieces per control that a domain is cut into at first, by the number of controls; else 2.
 
-A box that is too wide takes ten times as long as one that is decided.
+A box that is too wide takes ten times as long as one in which all zeros are found.
 """
 
-MORE_PIECES: Final = 128
-"""So many further boxes are tried after the first ones."""
+WORK: Final = 800
+"""What may be spent on one claim: 1 for a box in which all zeros are found, 10 for others."""
 
 SMALLEST: Final = 2.0**-14
 """Boxes of this share of the claim's domain are not halved any more."""
@@ -71,12 +72,11 @@ def covered_by_proof(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> 
     """
     if not is_provable(claim) or scenes.program.field.guards:
         return NOTHING
-    waiting, proved, tried, about = _pieces(claim), 0.0, 0, ""
-    first = len(waiting)
-    while waiting and tried < first + MORE_PIECES and (proved or tried < first):
-        box = waiting.pop(0)
-        tried += 1
+    waiting, proved, tried, about, work = deque(_pieces(claim)), 0.0, 0, "", 0
+    while waiting and work < WORK:
+        box = waiting.popleft()
         prover = _Prover(scenes, claim, box)
+        tried, work = tried + 1, work + prover.work
         outcome = prover.outcome(above)
         about = prover.about
         if outcome is Outcome.HOLDS:
@@ -84,7 +84,7 @@ def covered_by_proof(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> 
         elif outcome is Outcome.FAILS:
             return Covered(proved, _how(about, claim, proved, tried), (prover.middle,))
         elif claim.over and box.share > SMALLEST:
-            waiting += _halves(claim, box)
+            waiting.extend(_halves(claim, box))
     share = 1.0 if not waiting and proved > 1.0 - SMALLEST / 2 else min(proved, 1.0 - SMALLEST)
     return Covered(share, _how(about, claim, share, tried), ())
 
@@ -157,6 +157,7 @@ class _Prover:
             self._controls[:, columns.index(name)] = low, high
         self._proof: Proof = prove(self._view, self._controls)
         self.about = self._proof.about
+        self.work = 1 if self._proof.complete else 10
 
     def outcome(self, above: tuple[Claim, ...]) -> Outcome:
         """The claim on the box: whether it holds, or fails, for all controls in it."""
