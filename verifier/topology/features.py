@@ -234,8 +234,6 @@ class Course(StrEnum):
     """Why a trajectory is in the portrait."""
 
     SEED = "seed"
-    STABLE_MANIFOLD = "stable manifold"
-    UNSTABLE_MANIFOLD = "unstable manifold"
 
 
 @final
