@@ -272,8 +272,8 @@ def _jump(span: Range, place: float) -> TableError:
         "S242",
         span.name,
         f"the field jumps along {span.name} near {place:.4g} (SI), and a table would smear it",
-        "make the transition smooth (for example with tanh), or move the jump into a factor that "
-        "reads only controls",
+        "make the transition smooth (for example with tanh), move the jump into a factor that "
+        "reads only controls, or give each side a field of its own: `field: {modes: ...}`",
     )
 
 
