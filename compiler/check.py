@@ -17,6 +17,10 @@ from compiler.read_expressions import Expressions, read_expressions
 from compiler.read_modes import check_moved_values
 from compiler.references import check_references
 from compiler.settings import Settings, settings_of
+from compiler.sketch.compose import compose
+from compiler.sketch.design import Design
+from compiler.sketch.drawing import Drawing
+from compiler.sketch.frame import SketchRefusedError
 from runtime.program import Binding, Claim, Fidelity
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
@@ -39,6 +43,7 @@ class Checked:
     claims: tuple[Claim, ...]
     settings: Settings
     findings: Findings
+    design: Design | None = None
 
 
 def check(path: Path | str) -> tuple[Diagnostic, ...]:
@@ -82,6 +87,18 @@ def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:
     check_moved_values(spec, findings)
     if isinstance(spec.field.form, Modes) and not findings.has_errors:
         check_ways(spec.field.form, expressions.ways, declared, findings)
+    design = None
+    if expressions.drawing is not None and not findings.has_errors:
+        design = designed(expressions.drawing, declared, findings)
     return Checked(
-        loaded, spec, declared, expressions, fidelity, bindings, claims, settings, findings
+        loaded, spec, declared, expressions, fidelity, bindings, claims, settings, findings, design
     )
+
+
+def designed(drawing: Drawing, declared: Declarations, findings: Findings) -> Design | None:
+    """What is to be built from a drawing; None, and a finding, where nothing can look like it."""
+    try:
+        return compose(drawing, declared)
+    except SketchRefusedError as error:
+        findings.error(error.code, error.path, error.message, error.remedy)
+        return None

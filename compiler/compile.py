@@ -30,6 +30,10 @@ from compiler.lower_parts import (
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
 from compiler.python_module import ModuleError
 from compiler.settings import Settings
+from compiler.sketch.design import Design
+from compiler.sketch.fill import filled
+from compiler.sketch.frame import SketchRefusedError
+from compiler.sketch.lower import SKETCH, plan_sketch
 from compiler.tabulate import TableError
 from compiler.terms import TooManyCasesError
 from runtime.program import Field, Program
@@ -139,17 +143,27 @@ def _with_tables(
     except ModuleError as error:
         findings.error("S233", ("field", "module", "call"), error.message, error.remedy)
     _stop_at_errors(checked)
-    return replace(field, tables=tables, terms=terms, bounds=bounds)
+    return replace(field, tables=tables, terms=terms, bounds=bounds, coordinates=plan.coordinates)
 
 
 def _plan(checked: Checked) -> Plan:
     if isinstance(checked.spec.field.form, Formula | Step | Modes):
         return _plan_formula(checked)
+    if checked.design is not None:
+        return _plan_sketch(checked, checked.design)
     beside = Path(checked.loaded.source.name).resolve().parent
     plan = plan_sampled(checked.spec, checked.declared, beside, checked.findings)
     _stop_at_errors(checked)
     assert plan is not None, "a plan that can't be made leaves an error"
     return plan
+
+
+def _plan_sketch(checked: Checked, design: Design) -> Plan:
+    try:
+        return plan_sketch(filled(design, 0), checked.declared, checked.loaded.origin(SKETCH))
+    except SketchRefusedError as error:
+        checked.findings.error(error.code, error.path, error.message, error.remedy)
+    raise SpecError(checked.findings.diagnostics)
 
 
 def _plan_formula(checked: Checked) -> Plan:

@@ -9,7 +9,7 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet
-from compiler.ranges import range_of
+from compiler.ranges import Range, range_of
 from compiler.references import MOST_AXES
 from compiler.sampling import random_points
 from compiler.settings import Settings
@@ -23,7 +23,9 @@ from compiler.tabulate import (
     tabulate_function,
 )
 from runtime.arrays import Array
+from runtime.code import Code
 from runtime.flow import Source, flow_of, next_states, rates
+from runtime.machine import evaluate
 from runtime.program import ErrorBound, Field, Method, Program, Table, Term
 from spec_schema.expressions.tree import Expr
 
@@ -36,6 +38,7 @@ RELATIVE = {  # of the largest rate, where the spec declares no tolerance
     ("module", Method.CUBIC): 1e-5,
     ("grid", Method.CUBIC): 1e-5,
     ("arrows", Method.CUBIC): 1e-3,  # a sketch is not known better than that
+    ("sketch", Method.CUBIC): 5e-4,  # and here the verifier looks at what came out
 }
 RELATIVE_LINEAR = 1e-3
 SURVEY = 4_096  # points that tell how large a column is
@@ -110,16 +113,25 @@ def _largest_rates(program: Program, plan: Plan, declared: Declarations) -> Arra
         found = run(flow_of(program, Source.FORMULA), x, u)[:, list(program.driven)]
         sizes = np.abs(found)
     else:
-        [sheet] = plan.sheets
-        ranges = [range_of(name, declared) for name in sheet.over]
-        rng = np.random.default_rng(SEED)
-        places = rng.uniform(
-            [r.low for r in ranges], [r.high for r in ranges], (SURVEY, len(ranges))
-        )
-        columns = {use.component: use.column for use in sheet.uses}
-        sizes = np.abs(sheet.sample(places))[:, [columns[i] for i in sorted(columns)]]
+        sizes = np.abs(_sampled(program, plan, declared))
     largest: Array = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
     return largest
+
+
+def _sampled(program: Program, plan: Plan, declared: Declarations) -> Array:
+    """The rates (N, m) of a field without formula, by its sheets, on random points."""
+    [sheet] = plan.sheets
+    x, u = random_points(program, {}, SURVEY, SEED)
+    constants = [constant.value for constant in program.constants]
+    register = np.concatenate([x, u, np.broadcast_to(constants, (len(x), len(constants)))], axis=1)
+    places = {c.name: c.code for c in plan.coordinates}
+    axes = [places.get(name, Code(name)) for name in sheet.over]
+    columns = sheet.sample(evaluate(axes, program.register, register))
+    factors = evaluate([use.coefficient for use in sheet.uses], program.register, register)
+    found = np.zeros((len(x), len(declared.driven)))
+    for i, use in enumerate(sheet.uses):
+        found[:, use.component] += factors[:, i] * columns[:, use.column]
+    return found
 
 
 def _tolerances(largest: Array, settings: Settings, form: str) -> Array:
@@ -145,7 +157,10 @@ def _tabulated(
             "split it into factors of which each reads fewer (`gain * f(x)` keeps `gain` out of "
             "the table), or make a control a constant",
         )
-    ranges = tuple(range_of(n, declared, settings.fixed.get(n)) for n in sheet.over)
+    places = {c.name: Range(c.name, c.low, c.high, periodic=False) for c in plan.coordinates}
+    ranges = tuple(
+        places.get(n) or range_of(n, declared, settings.fixed.get(n)) for n in sheet.over
+    )
     budget = settings.budget // max(1, len(plan.sheets))
     shares = _column_tolerance(sheet, plan, tolerance) / settings.strictness
     return tabulate_function(Wanted(sheet.sample, ranges, shares, settings.method, budget))

@@ -24,7 +24,7 @@ from compiler.terms import summands
 from runtime.arrays import Array
 from runtime.code import ONE, Code
 from runtime.machine import evaluate
-from runtime.program import Kind, Table
+from runtime.program import Coordinate, Kind, Table
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.bounds import bounds
 from spec_schema.expressions.printers.text import to_text
@@ -74,10 +74,14 @@ class UnboundedError(Exception):
 @final
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The sheets of a field, and the parts of rates that no state enters: coefficients alone."""
+    """The sheets of a field, and the parts of rates that no state enters: coefficients alone.
+
+    coordinates: what sheets stand over beside states and controls.
+    """
 
     sheets: tuple[Sheet, ...]
     alone: tuple[Use, ...]
+    coordinates: tuple[Coordinate, ...] = ()
 
 
 def plan_formula(rates: Mapping[str, Expr], declared: Declarations) -> Plan:

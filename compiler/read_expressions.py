@@ -10,11 +10,14 @@ from compiler.quantities import unit_of
 from compiler.read_modes import Way, read_modes
 from compiler.read_rates import read_rates
 from compiler.scope import Scope, checked, dimension_in, read, scope_of, wanted_of
+from compiler.sketch.drawing import Drawing
+from compiler.sketch.reading import read_sketch
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.dimension import DIMENSIONLESS
 from spec_schema.expressions.tree import Expr
 from spec_schema.field_forms import Formula, Step
 from spec_schema.field_modes import Modes
+from spec_schema.field_sketch import Sketch
 
 
 @final
@@ -23,6 +26,7 @@ class Expressions:
     """The trees of a behavior.
 
     rates: of the driven states (for a step map, their next values). ways: between its modes.
+    drawing: a sketched field.
     """
 
     rates: Mapping[str, Expr]
@@ -30,6 +34,7 @@ class Expressions:
     outputs: Mapping[str, Expr]
     judge_when: Expr | None
     ways: tuple[Way, ...] = ()
+    drawing: Drawing | None = None
 
 
 def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Expressions:
@@ -42,7 +47,10 @@ def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findi
     if spec.judge_when is not None:
         wider = _with_signals(spec, scope, findings)
         judge_when = read(spec.judge_when, ("judge_when",), wider, findings)
-    return Expressions(rates, closures, outputs, judge_when, ways)
+    drawing = None
+    if isinstance(spec.field.form, Sketch):
+        drawing = read_sketch(spec.field.form, declared, scope, findings)
+    return Expressions(rates, closures, outputs, judge_when, ways, drawing)
 
 
 def signals(spec: BehaviorSpec) -> tuple[str, ...]:

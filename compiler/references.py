@@ -193,6 +193,8 @@ def mode_of(form: Form) -> frozenset[str]:
 def _read_by_field(form: Form, declared: Declarations, expressions: Expressions) -> frozenset[str]:
     read = frozenset(name for e in expressions.rates.values() for name in names_in(e))
     read = read.union(*(way.reads for way in expressions.ways))
+    if expressions.drawing is not None:
+        read = read.union(expressions.drawing.names, expressions.drawing.over)
     return read | frozenset(axes_of(form, declared))
 
 

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self, TypeAlias, final
 from pydantic import ConfigDict, Field, RootModel, Strict, model_validator
 
 from spec_schema.field_modes import Modes
+from spec_schema.field_sketch import Sketch
 from spec_schema.grid_values import Nested
 from spec_schema.mistake import Mistake, refuse
 from spec_schema.value_types import (
@@ -239,9 +240,9 @@ class Step(StrictModel):
     )
 
 
-Form: TypeAlias = Formula | Arrows | Grid | Module | Step | Modes
+Form: TypeAlias = Formula | Arrows | Grid | Module | Step | Modes | Sketch
 
-FORMS = ("formula", "arrows", "grid", "module", "step", "modes")
+FORMS = ("formula", "arrows", "grid", "module", "step", "modes", "sketch")
 
 
 @final
@@ -281,6 +282,13 @@ class FieldSpec(StrictModel):
         default=None,
         description="A field for each value of a discrete state, and when one follows another.",
         examples=[{"of": "going", "each": {"on": {"formula": {"x": "v"}}}}],
+    )
+
+    sketch: Sketch | None = Field(
+        default=None,
+        description="Features drawn in a plane: closed orbits, attractors, repellers, saddles, "
+        "separatrices. The compiler fills the rest, and adds what index theory requires.",
+        examples=[{"over": ["x", "y"], "points": [{"is": "attractor", "at": [0, 0]}]}],
     )
 
     @property
