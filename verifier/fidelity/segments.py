@@ -1,8 +1,8 @@
 """Which stretches of a trace are judged, and why the others are not.
 
 A stretch is cut where a needed series has a gap (longer than five of its median periods and than
-half a second), where `judge_when` is false, where a variable is outside its domain, and where
-what is left is shorter than the horizon.
+half a second), where `judge_when` is false, where a variable is outside its domain, where the mode
+switches, since states may jump there, and where what is left is shorter than the horizon.
 """
 
 from dataclasses import dataclass
@@ -59,7 +59,8 @@ def _causes(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Arr
         for each in _covered(series, hold)
     ]
     judged = [("judge_when is false", _judged(program, needs, whole))]
-    return [*covered, *judged, *_domains(program, needs, whole)]
+    domains = _domains(program, needs, whole)
+    return [*covered, *judged, *domains, *_switches(program, needs, whole)]
 
 
 def _exclusion(cause: str, before: Array, after: Array, base: Array) -> list[Exclusion]:
@@ -80,6 +81,18 @@ def _covered(series: Series, hold: float) -> list[tuple[str, Array]]:
         (f"{series.name} has not begun, or has ended", whole),
         (f"a gap in {series.name}", without(whole, gaps)),
     ]
+
+
+def _switches(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
+    """The instants at which the mode changes, each with the sample period before it."""
+    mode = program.field.mode
+    found = []
+    for each in needs.inputs:
+        if each.name == mode and each.series is not None:
+            changes = each.series.times[1:][np.diff(each.series.values) != 0.0]
+            before = changes - period_of(needs.series[needs.base].times)
+            found.append((f"{mode} changes", without(whole, np.column_stack([before, changes]))))
+    return found
 
 
 def _judged(program: Program, needs: Needs, whole: Array) -> Array:
