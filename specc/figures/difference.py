@@ -8,10 +8,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from runtime.arrays import Array
 from specc.comparison_text import verdict_text
-from specc.figures.axes_of_states import name_x, name_y, same_scale, shown
+from specc.figures.axes_of_states import name_x, name_y, same_scale, shown, split_at_seams
 from specc.figures.legend import Entry, draw_legend, line_entry
-from specc.figures.palettes import PALETTES, Palette, Style
+from specc.figures.palettes import PALETTES, Palette
 from specc.figures.paper import (
     BELOW,
     LEFT,
@@ -24,6 +25,7 @@ from specc.figures.paper import (
     write_heading,
 )
 from specc.figures.style import look
+from specc.figures.style_names import Style
 from verifier.topology.comparison import Comparison
 from verifier.topology.matching import Fate
 
@@ -44,8 +46,6 @@ WORDS: Final = (
 
 COLOURS: Final = ("#ffffff", "#e8f0f8", "#c9dcef", "#fbd9a6", "#f0a35e", "#c9552d")
 """Blue where it is allowed, orange where it is not; darker is more."""
-
-MARKS: Final = {Fate.SAME: "o", Fate.MOVED: "^", Fate.CHANGED: "D", Fate.MISSING: "X"}
 
 
 def draw_difference(comparison: Comparison) -> Figure:
@@ -91,22 +91,28 @@ def _map(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:
 
 
 def _features(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:
-    """A mark at each feature by what became of it, and where it should be."""
+    """Fixed points and cycles: found ones filled and solid, wanted ones open and dashed."""
     entries: list[Entry] = []
     for feature in comparison.features:
-        at = shown(comparison.axes, feature.at)
-        good = feature.fate is Fate.SAME
-        style: dict[str, Any] = {
-            "marker": MARKS.get(feature.fate, "P"),
-            "markersize": 8.0,
-            "linestyle": "none",
-            "markerfacecolor": palette.paper if good else palette.alarm,
-            "markeredgecolor": palette.ink,
-            "zorder": 10,
-        }
-        axes.plot(*at, clip_on=False, **style)
-        entries.append(line_entry(f"{feature.wanted or feature.found}: {feature.fate}", **style))
-    return entries
+        found, wanted = feature.points
+        color = palette.ink if feature.fate is Fate.SAME else palette.alarm
+        _path(axes, comparison, wanted, color=color, linestyle="--", markerfacecolor=palette.paper)
+        _path(axes, comparison, found, color=color, linestyle="-", markerfacecolor=color)
+        label = f"{feature.wanted or feature.found}: {feature.fate}"
+        if max(len(found), len(wanted)) > 1:
+            entries.append(line_entry(label, color=color))
+        else:
+            entries.append(line_entry(label, color=color, marker="o", linestyle="none"))
+    hint = line_entry("dashed or open: wanted", color=palette.ink, linestyle="--")
+    return [*entries, hint] if entries else []
+
+
+def _path(axes: Axes, comparison: Comparison, points: Array, **style: Any) -> None:
+    if len(points) == 1:
+        at = shown(comparison.axes, points[0])
+        axes.plot(*at, "o", **{**style, "linestyle": "none"}, clip_on=False, zorder=10)
+    for piece in split_at_seams(comparison.axes, points) if len(points) > 1 else ():
+        axes.plot(*shown(comparison.axes, piece).T, **style, linewidth=1.6, zorder=9)
 
 
 def _curve(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:

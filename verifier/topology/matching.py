@@ -39,7 +39,8 @@ class Feature:
 
     The types are empty on the side that lacks it. at: where it is (where wanted, if missing): of
     a cycle its point of largest first coordinate. moved: how far, (m,), of a cycle the farthest
-    that a point of it is off. periods: found and wanted, s; 0 for fixed points.
+    that a point of it is off. periods: found and wanted, s; 0 for fixed points. points: found and
+    wanted, each (T, m): one for a fixed point, a closed path for a cycle, none where it is not.
     """
 
     fate: Fate
@@ -48,6 +49,7 @@ class Feature:
     at: Array
     moved: Array
     periods: tuple[float, float]
+    points: tuple[Array, Array]
 
 
 @final
@@ -115,15 +117,26 @@ def _fates(
         a, b = ours[i], theirs[j]
         near = costs[i, j] <= tolerance and abs(a.period - b.period) <= tolerance * b.period
         fate = Fate.CHANGED if a.kind != b.kind else Fate.SAME if near else Fate.MOVED
-        moved, periods = frozen(gaps[i][j]), (a.period, b.period)
-        features.append(Feature(fate, a.kind, b.kind, a.at, moved, periods))
-    still = frozen(np.zeros(width.size))
+        features.append(
+            Feature(
+                fate,
+                a.kind,
+                b.kind,
+                a.at,
+                frozen(gaps[i][j]),
+                (a.period, b.period),
+                (a.points, b.points),
+            )
+        )
+    still, none = frozen(np.zeros(width.size)), frozen(np.empty((0, width.size)))
     for j in sorted(set(range(len(theirs))) - {j for _, j in pairs}):
         lost = theirs[j]
-        features.append(Feature(Fate.MISSING, "", lost.kind, lost.at, still, (0.0, lost.period)))
+        periods, points = (0.0, lost.period), (none, lost.points)
+        features.append(Feature(Fate.MISSING, "", lost.kind, lost.at, still, periods, points))
     for i in sorted(set(range(len(ours))) - {i for i, _ in pairs}):
         new = ours[i]
-        features.append(Feature(Fate.EXTRA, new.kind, "", new.at, still, (new.period, 0.0)))
+        periods, points = (new.period, 0.0), (new.points, none)
+        features.append(Feature(Fate.EXTRA, new.kind, "", new.at, still, periods, points))
     return features
 
 

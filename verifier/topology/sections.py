@@ -168,17 +168,22 @@ def _located(
     h = clock[1]
     slopes = h * rates_at(view, np.stack([a, b])) if len(path) else np.zeros((2, 0, 2))
     ends = frame.levels(np.stack([a, b], axis=1), sides)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        theta = ends[:, 0] / (ends[:, 0] - ends[:, 1])
+    theta = _finite(ends[:, 0], ends[:, 0] - ends[:, 1])
     for _ in range(6):
         point, slope = _hermite(a, b, slopes, theta)
         gap = frame.levels(point[:, None], sides)[:, 0]
         rise = sides * np.sum(slope / view.width * frame.normal, axis=-1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            theta = np.clip(np.where(np.isfinite(gap), theta - gap / rise, theta), 0.0, 1.0)
+        theta = np.clip(theta - _finite(gap, rise), 0.0, 1.0)
     point, _ = _hermite(a, b, slopes, theta)
     place = np.where(hit, frame.place(point), np.nan)
     return place, clock[index] + theta * h
+
+
+def _finite(above: Array, below: Array) -> Array:
+    """The ratio, 0 where that is no number: where there is no return after all."""
+    known = np.isfinite(above) & np.isfinite(below) & (np.abs(below) > 1e-300)
+    ratio = np.where(known, above, 0.0) / np.where(known, below, 1.0)
+    return np.clip(ratio, -1.0, 1.0)
 
 
 def _hermite(a: Array, b: Array, slopes: Array, theta: Array) -> tuple[Array, Array]:
