@@ -2,24 +2,40 @@
 
 from pathlib import Path
 
-from specc.figures.palettes import PALETTES, Style
+from specc.figures.bifurcation import draw_bifurcations
+from specc.figures.multiples import draw_multiples
+from specc.figures.palettes import PALETTES
 from specc.figures.portrait import draw_portrait
 from specc.figures.style import Picture, rendered
+from specc.figures.style_names import Style
 from specc.files import json_bytes, unknown_suffix, write_atomically
+from specc.portrait_text import record
+from specc.portraying import Found, Sweep
+from verifier.topology.continuation import Branches
 from verifier.topology.features import Portrait
-from verifier.topology.portrait_json import as_json
 
 
-def draw(portrait: Portrait, path: Path | str, style: str = Style.SCREEN) -> None:
-    """Write a portrait as .svg, .png or .pdf, or its numbers as .json.
+def draw(found: Found, path: Path | str, style: str = Style.SCREEN) -> None:
+    """Write a portrait, a sweep or a bifurcation diagram as .svg, .png, .pdf, or as .json.
 
     style: screen, journal (in grey, with serifs) or dark.
     """
     path = Path(path)
     if path.suffix.lower() == ".json":
-        write_atomically(path, json_bytes(as_json(portrait)))
+        write_atomically(path, json_bytes(record(found)))
     else:
-        write_picture(draw_portrait(portrait, Style(style)), path, Style(style))
+        write_picture(picture_of(found, Style(style)), path, Style(style))
+
+
+def picture_of(found: Found, style: Style) -> Picture:
+    """The figure that shows what was found."""
+    match found:
+        case Portrait():
+            return draw_portrait(found, style)
+        case Sweep():
+            return draw_multiples(found.portraits, found.name, style)
+        case Branches():
+            return draw_bifurcations(found, style)
 
 
 def write_picture(picture: Picture, path: Path, style: Style) -> None:

@@ -1,6 +1,9 @@
 """A portrait in sentences: what was found, what is proved, what is not known."""
 
 from runtime.arrays import Array
+from specc.branches_text import branches_record, branches_summary
+from specc.portraying import Found, Sweep
+from verifier.topology.continuation import Branches
 from verifier.topology.features import (
     AxisRange,
     Basins,
@@ -11,6 +14,29 @@ from verifier.topology.features import (
     Separatrix,
     Standing,
 )
+from verifier.topology.portrait_json import as_json
+
+
+def summary(found: Found) -> str:
+    """What was found, for people."""
+    match found:
+        case Portrait():
+            return portrait_summary(found)
+        case Sweep():
+            return "\n\n".join(map(portrait_summary, found.portraits))
+        case Branches():
+            return branches_summary(found)
+
+
+def record(found: Found) -> dict[str, object]:
+    """The same for programs, in the user's units."""
+    match found:
+        case Portrait():
+            return as_json(found)
+        case Sweep():
+            return {"swept": found.name, "portraits": [as_json(p) for p in found.portraits]}
+        case Branches():
+            return branches_record(found)
 
 
 def portrait_summary(portrait: Portrait) -> str:

@@ -1,13 +1,40 @@
 """A phase portrait, from what a user gives: names, and numbers in the variables' own units."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, TypeAlias, final
 
-from runtime.program import Control, Program, State
+import numpy as np
+
+from runtime.program import Control, Kind, Program, State
 from specc.faults import fault
 from specc.given import Value, settings_for
+from verifier.topology.continuation import Branches
 from verifier.topology.features import Portrait
+from verifier.topology.portrait import Detail
 from verifier.topology.portrait import portrait as look
 from verifier.topology.slices import SliceError
+
+FULL: Final = Detail(basins=80)
+"""Everything, with the basins of attraction in cells of an eightieth of each axis."""
+
+SMALL: Final = Detail(trajectories=2, basins=48)
+"""For one of many panels."""
+
+MOST_PANELS: Final = 24
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """Portraits over the same axes, at several values of `name`."""
+
+    name: str
+    portraits: tuple[Portrait, ...]
+
+
+Found: TypeAlias = Portrait | Sweep | Branches
+"""What can be drawn, printed and recorded."""
 
 
 def portrait(
@@ -15,14 +42,98 @@ def portrait(
     axes: Sequence[str] | None = None,
     held: Mapping[str, Value] | None = None,
 ) -> Portrait:
-    """The phase portrait over two states (or the only one), as numbers.
+    """The phase portrait over one to three states, everything else held, as numbers.
 
     Raises:
         SpecError: an axis or a name that it does not have, or a value outside its domain.
     """
+    return _portrait(program, axes, held or {}, FULL)
+
+
+def sweep(
+    program: Program,
+    name: str,
+    values: str | Sequence[Value],
+    axes: Sequence[str] | None = None,
+    held: Mapping[str, Value] | None = None,
+) -> Sweep:
+    """The portraits at several values of a control, or of a state that is held: slices.
+
+    values: a list, or a text as `0.1:0.8:6` (low, high, count) or `5` (how many slices).
+
+    Raises:
+        SpecError: as `portrait`; or too many values, or another form of text.
+    """
+    chosen = swept_values(program, name, values) if isinstance(values, str) else values
+    if not 1 <= len(chosen) <= MOST_PANELS:
+        message = f"a sweep shows 1 to {MOST_PANELS} values (got {len(chosen)})"
+        raise fault("V342", name, message, f"write {name}=LOW:HIGH:COUNT")
+    names = _without(program, axes, name)
+    given = held or {}
+    panels = tuple(_portrait(program, names, {**given, name: v}, SMALL) for v in chosen)
+    return Sweep(name, panels)
+
+
+def swept_values(program: Program, name: str, text: str) -> tuple[float, ...]:
+    """`0.1:0.8:6` as six values of a control or state in its own unit; `5` as five in its domain.
+
+    The ends may have units: `10 cm/s:80 cm/s:6`. Slices of a whole domain are as many middles.
+
+    Raises:
+        SpecError: another form, an unknown name, values outside the domain.
+    """
+    part = _part(program, name)
+    if isinstance(part, State) and part.kind is Kind.DISCRETE:
+        raise fault("V342", f"{name}={text}", f"'{name}' is discrete", "hold it by --set instead")
+    pieces = [piece.strip() for piece in text.split(":")]
+    if len(pieces) not in {1, 3} or not pieces[-1].isdigit() or int(pieces[-1]) < 1:
+        message = "this is no range of values"
+        raise fault("V342", f"{name}={text}", message, f"write {name}=LOW:HIGH:COUNT or a count")
+    count = int(pieces[-1])
+    if len(pieces) == 1:
+        step = (part.high - part.low) / count
+        ends = (part.low + 0.5 * step, part.high - 0.5 * step)
+    else:
+        ends = _ends(part, pieces)
+    return tuple(float(v) / part.unit.scale for v in np.linspace(*ends, count))
+
+
+def _ends(part: State | Control, pieces: Sequence[str]) -> tuple[float, float]:
+    """The two ends of a range in SI."""
+    low, high = (settings_for([part], {part.name: end}, "name")[part.name] for end in pieces[:2])
+    return low, high
+
+
+def _without(program: Program, axes: Sequence[str] | None, name: str) -> Sequence[str] | None:
+    """The axes without the state that is cut into slices."""
+    if axes is not None:
+        return [axis for axis in axes if axis != name]
+    if name in {state.name for state in program.states}:
+        moving = [s.name for s in program.states if s.is_driven and s.kind is not Kind.DISCRETE]
+        return [axis for axis in moving if axis != name][:2]
+    return None
+
+
+def _part(program: Program, name: str) -> State | Control:
+    """The control or state of this name.
+
+    Raises:
+        SpecError: there is none.
+    """
+    parts: tuple[State | Control, ...] = (*program.controls, *program.states)
+    for part in parts:
+        if part.name == name:
+            return part
+    known = ", ".join(part.name for part in parts)
+    raise fault("V341", name, f"no control or state is named '{name}'", f"there are {known}")
+
+
+def _portrait(
+    program: Program, axes: Sequence[str] | None, held: Mapping[str, Value], detail: Detail
+) -> Portrait:
     parts: tuple[State | Control, ...] = (*program.states, *program.controls)
-    settings = settings_for(parts, held or {}, "state or control")
+    settings = settings_for(parts, held, "state or control")
     try:
-        return look(program, None if axes is None else tuple(axes), settings)
+        return look(program, None if axes is None else tuple(axes), settings, detail)
     except SliceError as error:
         raise fault("V346", program.source.file, str(error)) from error

@@ -76,7 +76,7 @@ def compare(
     if output is not None:
         from specc.drawn import write_picture
         from specc.figures.difference import draw_difference
-        from specc.figures.palettes import Style
+        from specc.figures.style_names import Style
 
         write_picture(draw_difference(comparison), output, Style.SCREEN)
         say(f"wrote {output}", "bold")

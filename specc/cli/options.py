@@ -49,3 +49,13 @@ def assignments(settings: list[str]) -> dict[str, str]:
             raise typer.BadParameter(f"'{name}' is set twice")
         found[name] = value.strip()
     return found
+
+
+def one_assignment(setting: str) -> tuple[str, str]:
+    """`"mu=0.1:3:6"` as a name and what it is set to.
+
+    Raises:
+        typer.BadParameter: an entry without `=`.
+    """
+    ((name, value),) = assignments([setting]).items()
+    return name, value

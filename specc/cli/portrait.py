@@ -6,8 +6,9 @@ from typing import Annotated
 import typer
 
 from specc.cli.console import print_json, print_text, say
-from specc.cli.options import Format, FormatOption, Settings, SpecPath, assignments
+from specc.cli.options import Format, FormatOption, SpecPath, assignments, one_assignment
 from specc.cli.warming import warmed
+from specc.figures.style_names import Style
 
 
 def portrait(
@@ -19,42 +20,82 @@ def portrait(
     axes: Annotated[
         str | None,
         typer.Option(
-            "--axes", "-a", metavar="X,Y", help="The states to draw; default the first two."
+            "--axes", "-a", metavar="X,Y", help="One to three states; default the first two."
         ),
     ] = None,
-    settings: Settings = [],  # noqa: B006  typer copies it
+    settings: Annotated[
+        list[str],
+        typer.Option(
+            "--set",
+            "--at",
+            "-s",
+            metavar="NAME=VALUE",
+            help="Set a control or hold a state, in its own unit or with one. Repeatable.",
+        ),
+    ] = [],  # noqa: B006  typer copies it
+    sweep: Annotated[
+        str | None,
+        typer.Option(
+            "--sweep", metavar="NAME=LOW:HIGH:COUNT", help="A panel for each value of a control."
+        ),
+    ] = None,
+    slices: Annotated[
+        str | None,
+        typer.Option("--slices", metavar="NAME=COUNT", help="A panel for each slice of a state."),
+    ] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            "--against",
+            metavar="NAME[=LOW:HIGH]",
+            help="Bifurcation diagram: fixed points and cycles against a control.",
+        ),
+    ] = None,
+    style: Annotated[
+        Style, typer.Option("--style", help="For screens, for journals in grey, for dark pages.")
+    ] = Style.SCREEN,
     form: FormatOption = Format.TEXT,
 ) -> None:
-    """Draw the phase portrait of a behavior: field, nullclines, fixed points, trajectories.
+    """Draw the phase portrait of a behavior: field, fixed points, cycles, separatrices, basins.
 
-    States that are not drawn are held at `hold`, controls at their defaults; `--set` says else.
+    States that are not drawn are held at `hold`, controls at their defaults; `--at` says else.
+    Three axes give a view of the solid.
 
     **Examples**
 
-    `specc portrait specs/van_der_pol.yaml -o vdp.svg --set mu=2`
+    `specc portrait specs/van_der_pol.yaml -o vdp.svg --at mu=2`
+
+    `specc portrait specs/van_der_pol.yaml --sweep mu=0.1:3:6 --style journal -o vdp.pdf`
+
+    `specc portrait specs/van_der_pol.yaml --against mu -o bifurcations.svg`
 
     `specc portrait specs/wall_follow.yaml --axes distance,heading --format json`
     """
     from specc import loading, portraying
     from specc.files import require_suffix
+    from specc.portrait_text import record, summary
 
     require_suffix(output, ".svg", ".png", ".pdf", ".json")
-
     warmed(spec)
     program = loading.load_program(spec)
     names = tuple(name.strip() for name in axes.split(",")) if axes else None
-    portrayed = portraying.portrait(program, names, assignments(settings))
+    held = assignments(settings)
+    found: portraying.Found
+    match sweep or slices, against:
+        case None, None:
+            found = portraying.portrait(program, names, held)
+        case str(text), None if not (sweep and slices):
+            name, values = one_assignment(text)
+            found = portraying.sweep(program, name, values, names, held)
+        case _:
+            raise typer.BadParameter("take one of --sweep, --slices and --against")
     if form is Format.JSON:
-        from verifier.topology.portrait_json import as_json
-
-        print_json(as_json(portrayed))
+        print_json(record(found))
     else:
-        from specc.portrait_text import portrait_summary
-
-        print_text(portrait_summary(portrayed))
+        print_text(summary(found))
     if output is not None or form is Format.TEXT:
         from specc.drawn import draw
 
         path = output or Path(f"{program.name}.svg")
-        draw(portrayed, path)
+        draw(found, path, style)
         say(f"wrote {path}", "bold")

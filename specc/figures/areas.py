@@ -51,6 +51,8 @@ def basin_entries(panel: Panel, portrait: Portrait) -> list[Entry]:
     if basins is None:
         return []
     faint = panel.palette.faint
+    if panel.is_small:
+        return [Entry("basins of attraction", (_patch(tint(panel, 0), faint),))]
     entries = [
         Entry(
             f"goes to {attractor_name(portrait, a)}: {percent(a.share)}",

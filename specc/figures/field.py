@@ -29,7 +29,7 @@ ARROWS: Final = 24
 def draw_field(panel: Panel, grid: Grid, drawn: list[Array]) -> list[Entry]:
     """Streamlines, heavier where the flow is faster, beside the curves (T, 2), SI, `drawn`."""
     sheet = Sheet(grid.rates / panel.width * panel.size, panel.size)
-    spacing = Spacing(apart=0.15 if panel.weight >= 1.0 else 0.12)
+    spacing = Spacing(apart=0.12 if panel.is_small else 0.15)
     lines = evenly_spaced(sheet, spacing, [panel.inches(curve) for curve in drawn])
     ranks = _ranks(sheet)
     runs: list[Array] = []

@@ -33,8 +33,18 @@ def line_entry(label: str, **look: Any) -> Entry:
 
 
 def merged(entries: Iterable[Entry]) -> list[Entry]:
-    """Entries without those whose label was there before, in their order."""
-    return list({entry.label: entry for entry in reversed(list(entries))}.values())[::-1]
+    """Each label once: points first, then lines, then areas, each kind in its order."""
+    once: dict[str, Entry] = {}
+    for entry in entries:
+        once.setdefault(entry.label, entry)
+    return sorted(once.values(), key=_rank)
+
+
+def _rank(entry: Entry) -> int:
+    first = entry.handles[0]
+    if isinstance(first, Patch):
+        return 2
+    return 0 if first.get_linestyle() == "None" else 1
 
 
 def draw_legend(at: Axes | Figure, entries: Iterable[Entry], corner: tuple[float, float]) -> None:

@@ -7,20 +7,12 @@ a photocopier.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final, final
 
 from matplotlib.colors import LinearSegmentedColormap
 
-
-@final
-class Style(StrEnum):
-    """What a portrait is drawn for."""
-
-    SCREEN = "screen"
-    JOURNAL = "journal"
-    DARK = "dark"
+from specc.figures.style_names import Style
 
 
 @final

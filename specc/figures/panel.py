@@ -32,6 +32,11 @@ class Panel:
     weight: float = 1.0
 
     @property
+    def is_small(self) -> bool:
+        """Whether it is one of many."""
+        return self.weight < 1.0
+
+    @property
     def corner(self) -> Array:
         """The lower corner, (2,), SI."""
         return np.array([state.low for state in self.states])

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from specc.figures.axes_of_states import same_scale
 from specc.figures.legend import draw_legend
 from specc.figures.line import draw_line
-from specc.figures.palettes import PALETTES, Style
+from specc.figures.palettes import PALETTES
 from specc.figures.panel import Panel
 from specc.figures.paper import (
     BELOW,
@@ -24,6 +24,7 @@ from specc.figures.paper import (
 )
 from specc.figures.plane import draw_plane
 from specc.figures.style import look
+from specc.figures.style_names import Style
 from specc.portrait_text import proof_sentences
 from verifier.topology.features import Portrait
 

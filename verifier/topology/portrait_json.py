@@ -6,7 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from runtime.arrays import Array
-from verifier.topology.features import AxisRange, FixedPoint, Grid, Held, Portrait, Trajectory
+from verifier.topology.features import (
+    AxisRange,
+    Basins,
+    Cycle,
+    FixedPoint,
+    Grid,
+    Held,
+    Portrait,
+    Separatrix,
+    Trajectory,
+)
 
 FIELD_STRIDE = 4
 """Every which node of the portrait's grid is written."""
@@ -23,7 +33,21 @@ def as_json(portrait: Portrait) -> dict[str, object]:
         "domain": {a.name: [a.low / a.unit.scale, a.high / a.unit.scale] for a in axes},
         "held": {held.name: _held(held) for held in portrait.held},
         "map": portrait.every > 0.0,
+        "complete": portrait.completeness.complete,
+        "proof_of": portrait.completeness.about or None,
         "fixed_points": [_fixed_point(axes, point) for point in portrait.fixed_points],
+        "undecided": [
+            {"low": _named(axes, box.low), "high": _named(axes, box.high)}
+            for box in portrait.completeness.undecided
+        ],
+        "lost": [_named(axes, zero) for zero in portrait.completeness.lost],
+        "cycles": [_cycle(axes, cycle) for cycle in portrait.cycles],
+        "separatrices": [_separatrix(axes, branch) for branch in portrait.separatrices],
+        "basins": None if portrait.basins is None else _basins(axes, portrait.basins),
+        "switching": [
+            {"from": s.mode, "to": s.target, "lines": [_points(axes, line) for line in s.lines]}
+            for s in portrait.switching
+        ],
         "nullclines": [
             {"of": n.of, "lines": [_points(axes, line) for line in n.lines]}
             for n in portrait.nullclines
@@ -41,12 +65,64 @@ def _held(held: Held) -> float | str:
 def _fixed_point(axes: tuple[AxisRange, ...], point: FixedPoint) -> dict[str, object]:
     formula = point.formula_eigenvalues
     return {
-        "at": {a.name: float(v) / a.unit.scale for a, v in zip(axes, point.at, strict=True)},
+        "at": _named(axes, point.at),
         "kind": str(point.kind),
+        "proved": point.proved,
+        "kind_proved": point.kind_proved,
+        "within": _named(axes, point.radius) if point.proved else None,
+        "standing": str(point.standing),
         "eigenvalues": _pairs(point.eigenvalues),
         "formula_eigenvalues": None if formula is None else _pairs(formula),
         "drifts": list(point.drifts),
     }
+
+
+def _cycle(axes: tuple[AxisRange, ...], cycle: Cycle) -> dict[str, object]:
+    return {
+        "period": cycle.period,
+        "stable": cycle.is_attracting,
+        "stability": str(cycle.stability),
+        "multipliers": _pairs(cycle.multipliers),
+        "cross_checked": _pairs(cycle.cross_checked),
+        "doubtful": cycle.doubtful,
+        "turns": {a.name: n for a, n in zip(axes, cycle.turns, strict=False) if a.periodic},
+        "times": [_short(t) for t in cycle.times],
+        "points": _points(axes, cycle.points),
+        "modes": list(cycle.modes),
+    }
+
+
+def _separatrix(axes: tuple[AxisRange, ...], branch: Separatrix) -> dict[str, object]:
+    """A branch; `to` indexes the fixed points or the cycles, whichever it reaches."""
+    return {
+        "saddle": branch.saddle,
+        "stable": branch.stable,
+        "reaches": str(branch.reaches),
+        "to": branch.to if branch.to >= 0 else None,
+        "times": [_short(t) for t in branch.times],
+        "points": _points(axes, branch.points),
+    }
+
+
+def _basins(axes: tuple[AxisRange, ...], basins: Basins) -> dict[str, object]:
+    """Shares, and the cells' labels: an index of `attractors`, -1 leaves, -2 not followed."""
+    return {
+        "attractors": [
+            {"of": "cycles" if a.is_cycle else "fixed_points", "index": a.index, "share": a.share}
+            for a in basins.attractors
+        ],
+        "leaves": basins.leaves,
+        "open": basins.open,
+        "centres": {
+            a.name: [_short(v / a.unit.scale) for v in centres]
+            for a, centres in zip(axes, basins.centres, strict=True)
+        },
+        "labels": basins.labels.tolist(),
+    }
+
+
+def _named(axes: tuple[AxisRange, ...], point: Array) -> dict[str, float]:
+    return {a.name: float(v) / a.unit.scale for a, v in zip(axes, point, strict=True)}
 
 
 def _pairs(values: Sequence[complex]) -> list[list[float]]:
