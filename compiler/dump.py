@@ -64,6 +64,10 @@ def _field(field: Field) -> Iterator[str]:
         yield f"    error {name}  {within}, measured on {bound.points} points"
     for name, code in zip(field.driven, field.formula or (), strict=False):
         yield f"    formula {name}  {code.text}"
+    for guard in field.guards:
+        resets = "".join(f" {name} := {code.text}" for name, code in guard.resets)
+        ways = f"{guard.mode} -> {guard.target}"
+        yield f"    {field.mode} {ways}  when {guard.condition.text} >= 0{resets}  {guard.origin}"
 
 
 def _table(table: Table) -> str:

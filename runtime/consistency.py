@@ -28,6 +28,7 @@ def faults(program: Program) -> Iterator[str]:
     yield from _sized(program)
     yield from _ranged(program)
     yield from _field(program)
+    yield from _claimed(program)
     yield from _coded(program)
 
 
@@ -71,7 +72,8 @@ def _ranged(program: Program) -> Iterator[str]:
 
 def _field(program: Program) -> Iterator[str]:
     field = program.field
-    known = {state.name for state in program.states if state.is_driven}
+    yield from _modes(program)
+    known = {state.name for state in program.states if state.is_driven} - {field.mode}
     if set(field.driven) != known or _repeated(field.driven):
         yield "the field does not drive the driven states"
     if field.every < 0.0:
@@ -87,6 +89,28 @@ def _field(program: Program) -> Iterator[str]:
             yield f"table {index}: {fault}"
     yield from _terms(field)
     yield from _coordinates(program)
+
+
+def _modes(program: Program) -> Iterator[str]:
+    field = program.field
+    mode = next((state for state in program.states if state.name == field.mode), None)
+    if mode is None:
+        if field.mode or field.guards:
+            yield "the field has guards or a mode, and no state that names the mode"
+        return
+    if mode.kind is not Kind.DISCRETE or not mode.is_driven or mode.closure is not None:
+        yield f"'{mode.name}' cannot be the mode: it is not discrete and driven"
+    if field.is_map:
+        yield "a step map has no modes that switch"
+    if len(field.guards) > MOST_TERMS:
+        yield "the field has too many guards"
+    others = {state.name for state in program.states} - {mode.name}
+    for number, guard in enumerate(field.guards):
+        if {guard.mode, guard.target} - set(range(len(mode.values))):
+            yield f"guard {number} leaves or enters a mode that '{mode.name}' does not have"
+        names = [name for name, _ in guard.resets]
+        if _repeated(names) or set(names) - others:
+            yield f"guard {number} resets what is no state, or twice"
 
 
 def _coordinates(program: Program) -> Iterator[str]:
@@ -109,6 +133,27 @@ def _terms(field: Field) -> Iterator[str]:
             columns = field.tables[term.table].coefficients.shape[-1:]
             if not 0 <= term.column < sum(columns):
                 yield f"a term reads column {term.column}, which its table lacks"
+
+
+def _claimed(program: Program) -> Iterator[str]:
+    states = {state.name for state in program.states}
+    controls = {control.name for control in program.controls}
+    if len(program.claims) > MOST_TERMS:
+        yield "there are too many claims"
+    for number, claim in enumerate(program.claims):
+        places = {place.state for place in claim.places}
+        if (places | {reach.state for reach in claim.reaches}) - states:
+            yield f"claim {number} speaks of a place in what is no state"
+        spans = [span.control for span in claim.over]
+        settings = [name for name, _ in claim.settings]
+        if {*spans, *settings} - controls or _repeated([*spans, *settings]):
+            yield f"claim {number} sets what is no control, or twice"
+        if any(not span.low <= span.high for span in claim.over):
+            yield f"claim {number} is made over no value of a control"
+        if claim.least < 0 or (claim.most is not None and claim.most < claim.least):
+            yield f"claim {number} counts to less than it begins with"
+        if claim.share is not None and not 0.0 <= claim.share <= 1.0:
+            yield f"claim {number} speaks of a share that is none"
 
 
 def _table(program: Program, table: Table) -> Iterator[str]:
@@ -161,9 +206,23 @@ def _codes(program: Program) -> Iterator[tuple[str, Code, tuple[str, ...]]]:
         yield "coefficient of a term", term.coefficient, given
     for coordinate in program.field.coordinates:
         yield f"coordinate '{coordinate.name}'", coordinate.code, register
+    for number, guard in enumerate(program.field.guards):
+        yield f"condition of guard {number}", guard.condition, register
+        for name, code in guard.resets:
+            yield f"reset of '{name}' by guard {number}", code, register
+    yield from _codes_of_claims(program)
     if program.judge_when is not None:
         signals = tuple(binding.name for binding in program.bindings)
         yield "judge_when", program.judge_when, (*register, *signals)
+
+
+def _codes_of_claims(program: Program) -> Iterator[tuple[str, Code, tuple[str, ...]]]:
+    fixed = program.register[len(program.states) :]
+    for number, claim in enumerate(program.claims):
+        codes = [place.at for place in claim.places]
+        codes += [code for reach in claim.reaches for code in (reach.low, reach.high)]
+        for code in [*codes, *([claim.period] if claim.period else [])]:
+            yield f"claim {number}", code, fixed
 
 
 def _repeated(names: Iterable[str]) -> list[str]:

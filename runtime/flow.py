@@ -3,7 +3,7 @@
 x: states (..., n); u: controls (..., p); both in SI, angles not wrapped.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Final, final
 
@@ -11,7 +11,9 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans, frozen
 from runtime.code import Code
+from runtime.gates import gates_of, no_gates
 from runtime.kernels.blocks import LARGEST
+from runtime.kernels.events import Gates
 from runtime.kernels.tape import Tape
 from runtime.machine import run_tape
 from runtime.program import Kind, Program, State
@@ -40,7 +42,7 @@ class Flow:
 
     domain: (2, r) lowest and highest value of each entry; for periodic and discrete states and for
     constants all finite numbers. defaults: (r,). moves: (n,) whether a state has a rate at all.
-    is_map: the tape gives next states, not rates.
+    is_map: the tape gives next states, not rates. gates: how the mode switches, if it does.
     """
 
     program: Program
@@ -49,6 +51,12 @@ class Flow:
     defaults: Array
     moves: Booleans
     is_map: bool
+    gates: Gates
+
+    @property
+    def switches(self) -> bool:
+        """Whether there are modes that switch."""
+        return len(self.gates.ways) > 0
 
 
 def flow_of(program: Program, source: Source = Source.TABLES) -> Flow:
@@ -73,7 +81,13 @@ def flow_of(program: Program, source: Source = Source.TABLES) -> Flow:
         ),
         moves=np.array([_moves(program, state) for state in program.states], dtype=np.bool_),
         is_map=program.field.is_map,
+        gates=gates_of(program),
     )
+
+
+def in_one_mode(flow: Flow) -> Flow:
+    """The same flow without its guards: each trajectory stays in the mode in which it starts."""
+    return replace(flow, gates=no_gates())
 
 
 def rates(flow: Flow, x: Array, u: Array) -> Array:

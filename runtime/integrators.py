@@ -12,9 +12,11 @@ import numpy as np
 
 from runtime.arrays import Array, Integers
 from runtime.flow import Flow, registers
+from runtime.gates import no_gates
 from runtime.kernels.adapt import adapt
+from runtime.kernels.events import Gates
 from runtime.kernels.march import march
-from runtime.rollout import Ending
+from runtime.rollout import Ending, Switches
 from runtime.tape import read_only_integers, read_only_view
 
 MOST_STEPS: Final = 1_000_000
@@ -23,6 +25,7 @@ ENDINGS: Final = (
     Ending.LEFT_DOMAIN,
     Ending.DIVERGED,
     Ending.TOO_MANY_STEPS,
+    Ending.CHATTERING,
 )
 """By the kernels' codes."""
 
@@ -35,6 +38,7 @@ class Trajectories:
     endings: (B,) indices into `ENDINGS`. variables: (B,) the register entry that left its domain,
     or -1; sides: (B,) 1 where it left upwards, -1 downwards. ended_at: (B,). ended_in: (B, n),
     the state there: for `LEFT_DOMAIN` of a flow, the last one within the domain.
+    switches: of modes.
     """
 
     states: Array
@@ -43,6 +47,7 @@ class Trajectories:
     sides: Integers
     ended_at: Array
     ended_in: Array
+    switches: Switches
 
     def ending(self, trajectory: int) -> Ending:
         """How one trajectory ended."""
@@ -90,7 +95,7 @@ def fixed_steps(
         states,
         ended,
     )
-    return _trajectories(states, ended)
+    return _trajectories(states, ended, _switches(np.empty((0, 4 + 2 * n)), n))
 
 
 def adaptive(  # as one writes an initial value problem, then tolerances
@@ -106,14 +111,34 @@ def adaptive(  # as one writes an initial value problem, then tolerances
 
     Dormand and Prince's pair of orders 5 and 4, with dense output; the local error of each state
     stays below `atol + rtol * |x|`, where atol is a number or (n,). times begin at the start and
-    run forwards or backwards.
+    run forwards or backwards. Forwards, modes switch where guards open, located on the dense
+    output; backwards they stay, since what happened before a switch is not determined.
+    """
+    gates = flow.gates if times[-1] >= times[0] else no_gates()
+    return adaptive_with(gates, flow, x0, u, times, rtol, atol, most_steps)
+
+
+def adaptive_with(
+    gates: Gates,
+    flow: Flow,
+    x0: Array,
+    u: Array,
+    times: Array,
+    rtol: float,
+    atol: float | Array,
+    most_steps: int = MOST_STEPS,
+) -> Trajectories:
+    """`adaptive` with other gates than those of the flow.
+
+    A trajectory that its gates end has the code `ARRIVED` of `runtime.kernels.blocks`.
     """
     assert not flow.is_map, "a step map has no rates"
     n = len(flow.program.states)
     start = registers(flow, x0, u)
     states, ended = _empty(len(x0), len(times), n)
-    adapt(
+    log = adapt(
         flow.tape,
+        gates,
         flow.domain,
         read_only_integers(np.flatnonzero(flow.moves)),
         read_only_view(start),
@@ -124,13 +149,21 @@ def adaptive(  # as one writes an initial value problem, then tolerances
         states,
         ended,
     )
-    return _trajectories(states, ended)
+    return _trajectories(states, ended, _switches(log, n))
+
+
+def _switches(log: Array, n: int) -> Switches:
+    """The kernel's log in the order of trajectories; within each it has the order of time."""
+    rows = log[np.argsort(log[:, 0], kind="stable")] if len(log) else log
+    whole = rows[:, [0, 2, 3]].astype(np.int64)
+    before, after = rows[:, 4 : 4 + n], rows[:, 4 + n :]
+    return Switches(whole[:, 0], rows[:, 1], whole[:, 1], whole[:, 2], before, after)
 
 
 def _empty(batch: int, samples: int, n: int) -> tuple[Array, Array]:
     return np.empty((batch, samples, n)), np.empty((batch, 4 + n))
 
 
-def _trajectories(states: Array, ended: Array) -> Trajectories:
-    codes = ended[:, :3].astype(np.int64)
-    return Trajectories(states, codes[:, 0], codes[:, 1], codes[:, 2], ended[:, 3], ended[:, 4:])
+def _trajectories(states: Array, ended: Array, switches: Switches) -> Trajectories:
+    endings, variables, sides = ended[:, :3].astype(np.int64).T
+    return Trajectories(states, endings, variables, sides, ended[:, 3], ended[:, 4:], switches)

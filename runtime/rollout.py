@@ -4,7 +4,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import final
 
-from runtime.arrays import Array
+import numpy as np
+
+from runtime.arrays import Array, Integers
 
 
 @final
@@ -15,6 +17,7 @@ class Ending(StrEnum):
     LEFT_DOMAIN = "left domain"
     DIVERGED = "diverged"
     TOO_MANY_STEPS = "too many steps"
+    CHATTERING = "chattering"
 
     @property
     def sentence(self) -> str:
@@ -24,7 +27,42 @@ class Ending(StrEnum):
             Ending.LEFT_DOMAIN: "the state left the domain, where the behavior says nothing",
             Ending.DIVERGED: "the rates are not finite here",
             Ending.TOO_MANY_STEPS: "the step limit was reached before the end of the run",
+            Ending.CHATTERING: "the mode switches without end, in no time",
         }[self]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Switches:
+    """All switches of mode of a batch, trajectory by trajectory, in the order of time; SI.
+
+    trajectories: (k,) indices of the flattened leading axes. times: (k,) seconds.
+    left, entered: (k,) indices of modes. before, after: (k, n) the states, without and with the
+    jumps and the new mode.
+    """
+
+    trajectories: Integers
+    times: Array
+    left: Integers
+    entered: Integers
+    before: Array
+    after: Array
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.times)
+
+    def of(self, trajectory: int) -> "Switches":
+        """Those of one trajectory."""
+        mine = slice(*np.searchsorted(self.trajectories, [trajectory, trajectory + 1]))
+        return Switches(
+            self.trajectories[mine],
+            self.times[mine],
+            self.left[mine],
+            self.entered[mine],
+            self.before[mine],
+            self.after[mine],
+        )
 
 
 @final
@@ -37,6 +75,7 @@ class Rollout:
     endings, details: one for each trajectory, in the order of the flattened leading axes; a
     detail is a sentence with names and numbers, empty where the run completed.
     ended_at: (...) seconds. ended_in: (..., n) the state there.
+    switches: when modes switched; a sample at that very time is of the mode before.
     """
 
     program: str
@@ -48,6 +87,7 @@ class Rollout:
     details: tuple[str, ...]
     ended_at: Array
     ended_in: Array
+    switches: Switches
 
     @property
     def ending(self) -> Ending:

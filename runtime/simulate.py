@@ -11,9 +11,10 @@ import numpy as np
 from runtime.arrays import Array, frozen
 from runtime.flow import Flow, Source, flow_of
 from runtime.integrators import Trajectories, adaptive, fixed_steps
+from runtime.kernels.switching import MOST_SWITCHES
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
-from runtime.rollout import Ending, Rollout
+from runtime.rollout import Ending, Rollout, Switches
 
 SAMPLES: Final = 1000
 """Intervals between samples where the caller names none."""
@@ -89,6 +90,7 @@ def simulate(
         details=tuple(_detail(program, ran, b) for b in range(len(x0))),
         ended_at=frozen(ran.ended_at.reshape(shape)),
         ended_in=frozen(ran.ended_in.reshape(*shape, -1)),
+        switches=ran.switches,
     )
 
 
@@ -102,6 +104,11 @@ def _run(flow: Flow, x0: Array, u: Array, times: Array, method: Integrator) -> T
         case Adaptive(rtol, atol):
             widths = np.array([state.high - state.low for state in flow.program.states])
             return adaptive(flow, x0, u, times, rtol, atol * widths)
+        case FixedSteps() if flow.switches:
+            raise ValueError(
+                f"'{flow.program.name}' has modes that switch, which fixed steps do not look for; "
+                "use adaptive steps"
+            )
         case FixedSteps(step):
             fine, stride = _divided(times, step)
             ran = fixed_steps(flow, x0, fine, held, columns)
@@ -112,6 +119,7 @@ def _run(flow: Flow, x0: Array, u: Array, times: Array, method: Integrator) -> T
                 ran.sides,
                 ran.ended_at,
                 ran.ended_in,
+                ran.switches,
             )
     assert_never(method)
 
@@ -219,6 +227,16 @@ def _detail(program: Program, ran: Trajectories, b: int) -> str:
             return f"the rates are not finite {when}, {_state_text(program, ran.ended_in[b])}"
         case Ending.TOO_MANY_STEPS:
             return f"the step limit was reached {when}, {_state_text(program, ran.ended_in[b])}"
+        case Ending.CHATTERING:
+            return f"switches without end {when}, {_modes_text(program, ran.switches.of(b))}"
+
+
+def _modes_text(program: Program, switches: Switches) -> str:
+    """Between which modes it switched to and fro at the end."""
+    mode = next(state for state in program.states if state.name == program.field.mode)
+    last = np.unique([switches.left[-MOST_SWITCHES:], switches.entered[-MOST_SWITCHES:]])
+    names = " and ".join(mode.values[index] for index in last)
+    return f"between {names}" if len(last) > 1 else f"from {names} to itself"
 
 
 def _state_text(program: Program, x: Array) -> str:

@@ -1,14 +1,12 @@
 """Adaptive steps, compiled: Dormand and Prince's 5(4) pair with dense output of order 4.
 
 Every lane has its own time and step; a lane whose trajectory has ended takes the next one, so a
-block stays full, and a trajectory's numbers do not depend on the others.
-
-pace: (5, LANES) per lane its trajectory, its next sample, how many steps were tried, whether its
-first rates are still to be worked out, whether the last step was rejected.
+block stays full, and a trajectory's numbers do not depend on the others. Where there are guards,
+each step is searched for one that opens (`switching`).
 """
 
 import math
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -16,18 +14,14 @@ from runtime.arrays import Array, Integers
 from runtime.kernels.blocks import (
     COMPLETED,
     DIVERGED,
-    LARGEST,
     LEFT_DOMAIN,
     STAGES,
     TOO_MANY_STEPS,
     Places,
-    blank,
     copy_lane,
     copy_rows,
     first_exit,
     is_finite,
-    load,
-    note_end,
     note_exit,
     outsider,
     places_of,
@@ -36,32 +30,44 @@ from runtime.kernels.blocks import (
     work_space,
 )
 from runtime.kernels.cache import inlined, kernel, part
-from runtime.kernels.dormand_prince import first_step, may_leave, set_dense, set_stage, step_error
-from runtime.kernels.machine import run
+from runtime.kernels.dormand_prince import (
+    edge_ahead,
+    first_step,
+    may_leave,
+    set_dense,
+    set_stage,
+    step_error,
+)
+from runtime.kernels.events import Gates
+from runtime.kernels.machine import fill_literals, run
+from runtime.kernels.pace import (
+    FRESH,
+    GUARD,
+    JUDGE,
+    LEAST_ERROR,
+    REJECTED,
+    ROWS,
+    SAMPLE,
+    TODO,
+    TRAJECTORY,
+    TRIES,
+    Aim,
+    close_ranks,
+    refill,
+    stop,
+)
+from runtime.kernels.switching import find_events, look_at_starts, switch_all, with_room
 from runtime.kernels.tape import LANES, Tape
 
 # Step control: Hairer, Norsett, Wanner II.4 and IV.2 (PI controller, Gustafsson).
 SAFETY, MEMORY, SHRINK, GROW = 0.9, 0.04, 0.2, 10.0
 EXPONENT: Final = 0.2 - 0.75 * MEMORY
-LEAST_ERROR: Final = 1e-4
-EDGE: Final = 1e-9
-"""Part of a domain's width that counts as its edge, where steps cannot cross it."""
-
-
-TRAJECTORY, SAMPLE, TRIES, FRESH, REJECTED = range(5)
-
-
-class Aim(NamedTuple):
-    """When it ends, forwards or backwards; the relative tolerance; how many steps may be tried."""
-
-    end: float
-    rtol: float
-    most_steps: int
 
 
 @kernel
 def adapt(
     tape: Tape,
+    gates: Gates,
     domain: Array,
     moving: Integers,
     start: Array,
@@ -71,93 +77,60 @@ def adapt(
     most_steps: int,
     states: Array,
     ended: Array,
-) -> None:
+) -> Array:
     """Integrate from the registers `start` (B, r) at times[0]; samples at times (T,).
 
-    atol: (n,). Fills states (B, T, n) and ended (B, 4 + n).
+    atol: (n,). Fills states (B, T, n) and ended (B, 4 + n). Without guards in `gates` no mode
+    switches; the switches are returned, as rows of the log.
     """
     at = places_of(tape)
     w = work_space(tape, at)
-    pace = np.zeros((5, LANES), dtype=np.int64)
+    v = np.zeros((gates.tape.rows, LANES))
+    fill_literals(gates.tape, v)
+    log, logged = np.empty((0, 4 + 2 * at.n)), np.zeros(1, dtype=np.int64)
+    pace = np.zeros((ROWS, LANES), dtype=np.int64)
     aim = Aim(times[-1], rtol, most_steps)
+    guarded = gates.ways.shape[0] > 0
     waiting = start.shape[0]
     lanes = start.shape[0] - waiting
     while True:
-        for lane in range(LANES):
-            while waiting > 0 and (lane >= lanes or w[at.alive, lane] == 0.0):
-                b = start.shape[0] - waiting
-                _take_up(w, at, pace, domain, lane, start, b, times, states, ended)
-                waiting -= 1
-                lanes = max(lanes, lane + 1)
-        lanes = _close_ranks(w, at, pace, lanes)
+        if waiting > 0:
+            waiting, lanes = refill(
+                w, at, pace, domain, start, waiting, lanes, times, states, ended
+            )
+        lanes = close_ranks(w, at, pace, lanes)
         if lanes == 0:
-            return
+            return log[: logged[0]]
+        if guarded:
+            log = with_room(log, logged[0])
+            look_at_starts(gates, v, w, at, pace, lanes)
+            switch_all(gates, v, w, at, pace, domain, times, lanes, states, ended, log, logged)
         _attempt(tape, w, at, pace, moving, atol, aim, lanes, states, ended)
-        for i in range(lanes):
-            if w[at.alive, i] != 0.0:
-                _judge(w, at, pace, domain, moving, atol, aim, times, i, states, ended)
+        if guarded:
+            find_events(gates, v, w, at, pace, domain, moving, atol, aim, lanes)
+        _judge_all(w, at, pace, domain, moving, atol, aim, times, lanes, states, ended)
+        if guarded:
+            switch_all(gates, v, w, at, pace, domain, times, lanes, states, ended, log, logged)
 
 
 @part
-def _take_up(
+def _judge_all(
     w: Array,
     at: Places,
     pace: Integers,
     domain: Array,
-    lane: int,
-    start: Array,
-    b: int,
+    moving: Integers,
+    atol: Array,
+    aim: Aim,
     times: Array,
+    lanes: int,
     states: Array,
     ended: Array,
 ) -> None:
-    """Begin trajectory b in a lane; it ends at once outside the domain or where no time passes."""
-    load(w, at, lane, start, b)
-    w[at.t, lane] = times[0]
-    w[at.error, lane] = LEAST_ERROR
-    pace[TRAJECTORY, lane] = b
-    pace[SAMPLE, lane] = 0
-    pace[TRIES, lane] = 0
-    pace[FRESH, lane] = 1
-    pace[REJECTED, lane] = 0
-    variable = outsider(w, at.register, domain, domain.shape[1], lane)
-    if variable >= 0:
-        _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
-        note_exit(variable, w[variable, lane], domain, ended, b)
-        return
-    for s in range(times.shape[0]):
-        if times[s] != times[0]:
-            return
-        for i in range(at.n):
-            states[b, s, i] = w[at.x + i, lane]
-        pace[SAMPLE, lane] = s + 1
-    _stop(w, at, pace, lane, COMPLETED, states, ended)
-
-
-@part
-def _stop(
-    w: Array, at: Places, pace: Integers, lane: int, code: float, states: Array, ended: Array
-) -> None:
-    """End a lane where it is now."""
-    b = pace[TRAJECTORY, lane]
-    note_end(w, at, lane, code, ended, b)
-    blank(states, b, pace[SAMPLE, lane])
-
-
-@part
-def _close_ranks(w: Array, at: Places, pace: Integers, lanes: int) -> int:
-    """Move the living lanes together; how many there are."""
-    living = 0
-    for lane in range(lanes):
-        if w[at.alive, lane] == 0.0:
-            continue
-        if living < lane:
-            for i in range(w.shape[0]):
-                w[i, living] = w[i, lane]
-            for i in range(pace.shape[0]):
-                pace[i, living] = pace[i, lane]
-        living += 1
-    return living
+    """Judge the steps of all living lanes but those that are to be repeated, or to jump at once."""
+    for i in range(lanes):
+        if w[at.alive, i] != 0.0 and pace[TODO, i] == JUDGE:
+            _judge(w, at, pace, domain, moving, atol, aim, times, i, states, ended)
 
 
 @inlined
@@ -209,7 +182,7 @@ def _choose_steps(
             first = first_step(w, at, moving, atol, aim.rtol, lane)
             w[at.h, lane] = math.copysign(first, left)
             if not is_finite(w, at.k, at.n, lane):
-                _stop(w, at, pace, lane, DIVERGED, states, ended)
+                stop(w, at, pace, lane, DIVERGED, states, ended)
         if abs(w[at.h, lane]) * 1.01 >= abs(left):
             w[at.h, lane] = left
 
@@ -249,7 +222,7 @@ def _judge(
         if w[at.t, lane] + 0.1 * w[at.h, lane] == w[at.t, lane]:
             _stop_stuck(w, at, pace, domain, moving, lane, states, ended)
     if w[at.alive, lane] != 0.0 and pace[TRIES, lane] >= aim.most_steps:
-        _stop(w, at, pace, lane, TOO_MANY_STEPS, states, ended)
+        stop(w, at, pace, lane, TOO_MANY_STEPS, states, ended)
 
 
 @part
@@ -268,18 +241,12 @@ def _stop_stuck(
     A formula may have no value beyond its domain (the root of a negative number), so that no step
     across the edge succeeds; what comes so near to it leaves the domain there.
     """
-    for j in range(moving.shape[0]):
-        i = moving[j]
-        low, high, x = domain[0, i], domain[1, i], w[at.x + i, lane]
-        rate = w[at.k + i, lane] * w[at.h, lane]
-        near = EDGE * (high - low)
-        if low == -LARGEST:
-            continue
-        if (rate < 0.0 and x - low < near) or (rate > 0.0 and high - x < near):
-            _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
-            note_exit(i, x, domain, ended, pace[TRAJECTORY, lane])
-            return
-    _stop(w, at, pace, lane, DIVERGED, states, ended)
+    i = edge_ahead(w, at, domain, moving, lane)
+    if i >= 0:
+        stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
+        note_exit(i, w[at.x + i, lane], domain, ended, pace[TRAJECTORY, lane])
+        return
+    stop(w, at, pace, lane, DIVERGED, states, ended)
 
 
 @part
@@ -295,7 +262,10 @@ def _accept(
     states: Array,
     ended: Array,
 ) -> None:
-    """Give the samples within the step and go on to its end, or to where the domain is left."""
+    """Give the samples within the step and go on to its end, an event, or the domain's edge."""
+    if pace[GUARD, lane] >= 0:
+        _go_to_event(w, at, pace, times, lane, states)
+        return
     h = w[at.h, lane]
     reached = aim.end if h == aim.end - w[at.t, lane] else w[at.t, lane] + h
     variable = outsider(w, at.new, domain, at.n, lane)
@@ -311,7 +281,7 @@ def _accept(
         w[at.t, lane] += theta * h
         for i in range(at.n):
             w[at.x + i, lane] = point(w, at.dense + 5 * i, lane, theta)
-        _stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
+        stop(w, at, pace, lane, LEFT_DOMAIN, states, ended)
         value = w[at.x + variable, lane]
         note_exit(variable, value, domain, ended, pace[TRAJECTORY, lane])
         return
@@ -319,7 +289,19 @@ def _accept(
     copy_lane(w, at.new, at.x, at.n, lane)
     copy_lane(w, at.k + (STAGES - 1) * at.n, at.k, at.n, lane)
     if pace[SAMPLE, lane] == times.shape[0]:
-        _stop(w, at, pace, lane, COMPLETED, states, ended)
+        stop(w, at, pace, lane, COMPLETED, states, ended)
+
+
+@part
+def _go_to_event(
+    w: Array, at: Places, pace: Integers, times: Array, lane: int, states: Array
+) -> None:
+    """Give the samples before the event and go there; the step's polynomial is known."""
+    theta = w[at.theta, lane]
+    _give_samples(w, at, pace, times, theta, lane, states)
+    w[at.t, lane] += theta * w[at.h, lane]
+    for i in range(at.n):
+        w[at.x + i, lane] = point(w, at.dense + 5 * i, lane, theta)
 
 
 @part

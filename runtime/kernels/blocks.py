@@ -26,6 +26,8 @@ from runtime.kernels.tape import LANES, Tape
 
 # Numbers with a point: numba compiles a function anew for every whole constant it is called with.
 COMPLETED, LEFT_DOMAIN, DIVERGED, TOO_MANY_STEPS = 0.0, 1.0, 2.0, 3.0
+CHATTERING, ARRIVED = 4.0, 5.0
+"""Ends at modes: it switches without end; it came to the section or guard that was to end it."""
 STAGES: Final = 7
 LOOKS: Final = 8
 """Places within a step where an excursion out of the domain is looked for."""
@@ -41,6 +43,8 @@ class Places(NamedTuple):
     k: rates (STAGES times n rows).
     dense: the step's polynomial (5 n rows, that of state i from dense + 5 i on).
     t, h: time and step. alive: 1 or 0. error: the last step's.
+    theta, beyond: the places in the step around an event (beyond is -1 where there is one only).
+    since: the time of the first of the last quick switches.
     """
 
     n: int
@@ -53,6 +57,9 @@ class Places(NamedTuple):
     h: int
     alive: int
     error: int
+    theta: int
+    beyond: int
+    since: int
 
 
 @inlined
@@ -62,13 +69,13 @@ def places_of(tape: Tape) -> Places:
     x = tape.rows
     dense = x + (2 + STAGES) * n
     t = dense + 5 * n
-    return Places(n, 0, x, x + n, x + 2 * n, dense, t, t + 1, t + 2, t + 3)
+    return Places(n, 0, x, x + n, x + 2 * n, dense, t, t + 1, t + 2, t + 3, t + 4, t + 5, t + 6)
 
 
 @inlined
 def work_space(tape: Tape, at: Places) -> Array:
     """An empty work space with the tape's literals in place."""
-    w = np.zeros((at.error + 1, LANES))
+    w = np.zeros((at.since + 1, LANES))
     fill_literals(tape, w)
     return w
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from runtime.arrays import Array, Integers
-from runtime.kernels.blocks import STAGES, Places, begin_dense, is_finite
+from runtime.kernels.blocks import LARGEST, STAGES, Places, begin_dense, is_finite
 from runtime.kernels.cache import inlined, part
 
 # J. R. Dormand, P. J. Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math.
@@ -41,6 +41,10 @@ DENSE: Final = np.array(
         69997945 / 29380423,
     ]
 )
+
+
+EDGE: Final = 1e-9
+"""Part of a domain's width that counts as its edge, where steps cannot cross it."""
 
 
 @inlined
@@ -116,3 +120,18 @@ def first_step(
         size = max(size, abs(w[at.x + i, lane]) / scale)
         speed = max(speed, abs(w[at.k + i, lane]) / scale)
     return 0.01 * size / speed if size > 1e-5 and speed > 1e-5 else 1e-6
+
+
+@part
+def edge_ahead(w: Array, at: Places, domain: Array, moving: Integers, lane: int) -> int:
+    """The first state that is at an edge of its domain, on its way out; else -1."""
+    for j in range(moving.shape[0]):
+        i = int(moving[j])
+        low, high, x = domain[0, i], domain[1, i], w[at.x + i, lane]
+        rate = w[at.k + i, lane] * w[at.h, lane]
+        near = EDGE * (high - low)
+        if low == -LARGEST:
+            continue
+        if (rate < 0.0 and x - low < near) or (rate > 0.0 and high - x < near):
+            return i
+    return -1

@@ -30,7 +30,7 @@ class Tape(NamedTuple):
     rows: how many there are. instructions: (k, 5) operation, target row, operand rows a, b, c.
     literals: values for the rows from `entries` on. results: (q,) rows that hold them after a run.
     shapes: (t, 4) per table: cubic (0 or 1), axes d, columns m, offset into `coefficients`.
-    axes: (t, 5) the register entry of each axis. counts: (t, 5) coefficients along each axis.
+    axes: (t, 5) the row of each axis. counts: (t, 5) coefficients along each axis.
     periodic, lows, inverse_steps: (t, 5). coefficients: those of all tables, flat.
     machine, lookup: where the machine code of both is in this process; lookup is 0 without tables.
     """
