@@ -9,7 +9,15 @@ from scipy.integrate import solve_ivp
 
 from runtime.arrays import Array
 from runtime.program import Kind, Program
-from tests.verifier.topology_scenes import behavior, linear, pendulum, plane, state, tabulated
+from tests.verifier.topology_scenes import (
+    behavior,
+    henon,
+    linear,
+    pendulum,
+    plane,
+    state,
+    tabulated,
+)
 from verifier.topology.features import Portrait, Reaches, Separatrix
 from verifier.topology.portrait import Detail, portrait
 
@@ -185,3 +193,133 @@ def test_a_saddle_on_the_border_has_the_branches_that_lie_within() -> None:
     unstable = [s for s in found if not s.stable]
     assert len(unstable) == 1
     assert unstable[0].points[-1] == pytest.approx([2.0, 0.0], abs=1e-6)
+
+
+def driven_pendulum(direction: str) -> Program:
+    """With a constant torque it can keep running; backward in time for direction -1."""
+    return behavior(
+        "driven",
+        (state("angle", -math.pi, math.pi, kind=Kind.PERIODIC), state("rate", -4.0, 4.0)),
+        (f"{direction} rate mul", f"{direction} 0.5 angle sin sub 0.2 rate mul sub mul"),
+    )
+
+
+def test_a_driven_pendulums_saddle_separates_hanging_from_running() -> None:
+    found = shown(driven_pendulum("1"))
+
+    ways = {s.reaches for s in found.separatrices if not s.stable}
+    assert ways == {Reaches.POINT, Reaches.CYCLE}
+    (running,) = found.cycles
+    for s in found.separatrices:
+        if s.reaches is Reaches.CYCLE:
+            assert found.cycles[s.to] is running
+            highest = running.points[:, 1].max()
+            assert running.points[:, 1].min() < s.points[-1, 1] + 0.05 < highest + 0.1
+
+
+def test_backward_in_time_the_same_branches_come_from_there() -> None:
+    found = shown(driven_pendulum("-1"))
+
+    ways = {s.reaches for s in found.separatrices if s.stable}
+    assert ways == {Reaches.POINT, Reaches.CYCLE}
+    for s in found.separatrices:
+        assert np.all(np.diff(s.times) > 0.0)
+        if s.stable and s.reaches is Reaches.POINT:
+            assert s.points[0] == pytest.approx(found.fixed_points[s.to].at, abs=0.05)
+
+
+def lorenz(r: float) -> Program:
+    return behavior(
+        "lorenz",
+        (state("x", -30.0, 30.0), state("y", -40.0, 40.0), state("z", -10.0, 60.0)),
+        ("10 y x sub mul", f"x {r!r} z sub mul y sub", "x y mul 8 3 div z mul sub"),
+    )
+
+
+@pytest.mark.parametrize(("r", "crosses"), [(13.8, False), (14.05, True)])
+def test_lorenz_unstable_branches_change_sides_at_the_homoclinic_value(
+    r: float, *, crosses: bool
+) -> None:
+    # r = 13.926: Sparrow 1982; Strogatz 2015, section 9.5.
+    detail = Detail(solid=9, trajectories=0, cycles=False)
+    found = portrait(lorenz(r), ("x", "y", "z"), detail=detail)
+
+    assert len(found.separatrices) == 2
+    for s in found.separatrices:
+        assert s.reaches is Reaches.POINT
+        side = np.sign(s.points[0, 0])
+        goal = np.sign(found.fixed_points[s.to].at[0])
+        assert goal == (-side if crosses else side)
+
+
+def test_a_maps_unstable_manifold_follows_its_closed_form() -> None:
+    # x -> 2 x, y -> y/2 + x²: y = 2/7 x² is carried into itself.
+    program = behavior(
+        "map",
+        (state("x", -2.0, 2.0), state("y", -2.0, 2.0)),
+        ("2 x mul", "0.5 y mul x x mul add"),
+        every=1.0,
+    )
+    found = separatrices(program)
+
+    assert len(found) == 4
+    for s in found:
+        x, y = s.points.T
+        assert s.reaches is Reaches.EDGE
+        assert np.all(np.diff(s.times) > 0.0)
+        if s.stable:
+            assert x == pytest.approx(np.zeros(len(x)), abs=1e-8)
+            assert abs(y[0]) == pytest.approx(2.0, abs=1e-2)
+        else:
+            assert y == pytest.approx(2.0 / 7.0 * x * x, abs=1e-8)
+            assert abs(x[-1]) == pytest.approx(2.0, abs=1e-2)
+
+
+def test_henons_attractor_lies_on_the_unstable_manifold_of_its_saddle() -> None:
+    # Benedicks and Carleson 1991: it is the manifold's closure.
+    found = portrait(henon(), detail=Detail(plane=65, trajectories=0, cycles=False))
+    inner = max(range(len(found.fixed_points)), key=lambda i: found.fixed_points[i].at[0])
+    manifold = np.concatenate(
+        [s.points for s in found.separatrices if s.saddle == inner and not s.stable]
+    )
+
+    x, y = 0.1, 0.1
+    gaps = []
+    for step in range(400):
+        x, y = 1.0 - 1.4 * x * x + y, 0.3 * x
+        if step > 50:
+            gaps.append(float(np.hypot(*(manifold - [x, y]).T).min()))
+    assert np.quantile(gaps, 0.95) < 0.05
+
+
+def test_what_starts_on_henons_stable_manifold_comes_to_its_saddle() -> None:
+    found = portrait(henon(), detail=Detail(plane=65, trajectories=0, cycles=False))
+
+    stable = [s for s in found.separatrices if s.stable]
+    assert len(stable) == 4
+    for s in stable:
+        nearest = []
+        for start in s.points[:: max(len(s.points) // 10, 1)]:
+            path = [start]
+            for _ in range(6):
+                x, y = path[-1]
+                path.append(np.array([1.0 - 1.4 * x * x + y, 0.3 * x]))
+            gap = np.hypot(*(np.array(path) - found.fixed_points[s.saddle].at).T)
+            nearest.append(float(gap.min()))
+        assert max(nearest) < 1e-3
+
+
+def test_unstable_branches_of_a_map_go_to_its_stable_points() -> None:
+    program = behavior(
+        "cubic",
+        (state("x", -2.0, 2.0), state("y", -2.0, 2.0)),
+        ("1.5 x mul 0.5 x x mul x mul mul sub", "0.5 y mul 0.1 x mul add"),
+        every=1.0,
+    )
+    found = shown(program)
+
+    unstable = [s for s in found.separatrices if not s.stable]
+    assert len(unstable) == 2
+    for s in unstable:
+        assert s.reaches is Reaches.POINT
+        assert s.points[-1] == pytest.approx(found.fixed_points[s.to].at, abs=0.05)
