@@ -1,7 +1,7 @@
 """The phase portrait of a behavior: topology first, as numbers; others draw it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -19,6 +19,8 @@ from verifier.topology.features import (
     Trajectory,
 )
 from verifier.topology.fixed_points import find_fixed_points
+from verifier.topology.hybrid import hybrid_of
+from verifier.topology.hybrid_portrait import with_modes
 from verifier.topology.manifolds import find_separatrices
 from verifier.topology.nullclines import find_nullclines
 from verifier.topology.orbits import find_orbits
@@ -71,6 +73,22 @@ def portrait(
         named = ", ".join(axis.name for axis in view.axes)
         raise SliceError(f"a portrait has one to three different axes (got {named})")
     grid = _sampled(view, detail)
+    hybrid = hybrid_of(view)
+    if hybrid is None:
+        return _assembled(program, view, grid, detail)
+    one_mode = replace(detail, separatrices=False, trajectories=0, basins=0)
+    return with_modes(
+        hybrid,
+        _assembled(program, view, grid, one_mode),
+        grid,
+        cycles=detail.cycles,
+        paths=detail.trajectories,
+        basins=detail.basins,
+    )
+
+
+def _assembled(program: Program, view: Slice, grid: Grid, detail: Detail) -> Portrait:
+    """The portrait; of a field with modes, as if the one that is shown were never left."""
     points, completeness, remarks = find_fixed_points(view, grid)
     cycles, hints = _cycles(view, points, detail)
     separatrices = find_separatrices(view, points, cycles) if detail.separatrices else ()
@@ -135,7 +153,8 @@ def _notes(program: Program, view: Slice, grid: Grid) -> tuple[str, ...]:
     names = [axis.name for axis in view.axes]
     still = [name for j, name in enumerate(names) if not np.nanmax(np.abs(grid.rates[..., j]))]
     notes = [f"{name} does not move by itself here, so no point is isolated" for name in still]
-    others = [state.name for state in program.states if state.is_driven and state.name not in names]
+    kept = {*names, program.field.mode}
+    others = [state.name for state in program.states if state.is_driven and state.name not in kept]
     if others:
         notes.append(f"held although the behavior drives it: {', '.join(others)}")
     return tuple(notes)

@@ -1,0 +1,198 @@
+"""Cycles through modes: period laws, closed forms, an independent return map, chattering."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+from compiler.compile import compile_file
+from runtime.program import Program
+from tests.verifier.hybrid_scenes import bouncing_ball, carousel, relay, slanted, thermostat
+from verifier.topology.features import Cycle, Stability
+from verifier.topology.hybrid import Hybrid, hybrid_of, leaves_at
+from verifier.topology.hybrid_cycles import find_hybrid_cycles
+from verifier.topology.portrait import portrait
+from verifier.topology.slices import cut
+
+SPECS = Path(__file__).parents[2] / "specs"
+PERIOD = 1e-6  # relative; what the issue asks for, and far above the integration's error
+
+
+def compiled(name: str) -> Program:
+    return compile_file(SPECS / f"{name}.yaml", lambda _what, _done, _of: None).program
+
+
+PATROL = compiled("patrol")
+TURNING = compiled("patrol_turning")
+
+
+def hybrid(program: Program, held: dict[str, float] | None = None) -> Hybrid:
+    found = hybrid_of(cut(program, None, held or {}))
+    assert found is not None
+    return found
+
+
+def cycles(program: Program, held: dict[str, float] | None = None) -> tuple[Cycle, ...]:
+    return find_hybrid_cycles(hybrid(program, held))[0]
+
+
+def controls(program: Program) -> st.SearchStrategy[dict[str, float]]:
+    """Values of all controls, anywhere in their domains."""
+    return st.fixed_dictionaries({c.name: st.floats(c.low, c.high) for c in program.controls})
+
+
+@settings(max_examples=15, deadline=None)
+@given(controls(PATROL))
+def test_the_patrol_takes_its_two_ways_at_their_speeds(u: dict[str, float]) -> None:
+    [cycle] = cycles(PATROL, u)
+
+    way = u["x1"] - u["x2"]
+    assert cycle.period == pytest.approx(way / u["v1"] + way / u["v2"], rel=PERIOD)
+    assert cycle.stability is Stability.STABLE
+    assert not cycle.doubtful
+
+
+@settings(max_examples=15, deadline=None)
+@given(controls(TURNING))
+def test_turning_at_constant_acceleration_takes_what_theory_says(u: dict[str, float]) -> None:
+    [cycle] = cycles(TURNING, u)
+
+    way, sum_ = u["x1"] - u["x2"], u["v1"] + u["v2"]
+    turns = sum_**3 / (2.0 * u["a"] * u["v1"] * u["v2"])
+    assert cycle.period == pytest.approx(way / u["v1"] + way / u["v2"] + turns, rel=PERIOD)
+    # It stops after v1²/(2 a), and the picture's points pass within a sample of that place.
+    farthest = u["x1"] + u["v1"] ** 2 / (2.0 * u["a"])
+    assert cycle.points[:, 0].max() == pytest.approx(farthest, abs=0.02)
+    assert set(cycle.modes) == {0, 1, 2, 3}
+
+
+def test_the_patrol_of_the_thesis_is_a_rectangle() -> None:
+    [cycle] = cycles(PATROL, {"x1": 1.0, "x2": -1.2, "v1": 0.6, "v2": 0.3})
+
+    jumps = np.flatnonzero(np.diff(cycle.times) == 0.0)
+    corners = {tuple(np.round(cycle.points[i + side], 9)) for i in jumps for side in (0, 1)}
+    assert corners == {(1.0, 0.6), (1.0, -0.3), (-1.2, -0.3), (-1.2, 0.6)}
+    np.testing.assert_array_equal(cycle.points[0], cycle.points[-1])
+
+
+@given(st.floats(0.1, 0.8), st.floats(0.0, 1.0), st.floats(-0.6, 0.6))
+@settings(max_examples=10, deadline=None)
+def test_a_multiplier_is_that_of_the_return_map(keep: float, settle: float, lift: float) -> None:
+    [cycle] = cycles(carousel(f"{keep!r} y mul {lift!r} add", settle))
+
+    factor = keep * math.exp(-2.0 * settle)
+    assert cycle.period == pytest.approx(2.0, rel=1e-9)
+    assert cycle.multipliers[0] == pytest.approx(factor, abs=1e-6)
+    assert cycle.cross_checked[0] == pytest.approx(factor, abs=1e-6)
+    starts = cycle.points[np.isclose(cycle.points[:, 0], -1.0), 1]
+    np.testing.assert_allclose(starts, lift / (1.0 - factor), atol=1e-7)
+
+
+def test_a_cycle_that_repels_is_found_between_its_neighbours() -> None:
+    [cycle] = cycles(carousel("2 y mul 0.5 sub"))
+
+    assert cycle.stability is Stability.UNSTABLE
+    assert cycle.multipliers[0] == pytest.approx(2.0, abs=1e-5)
+    np.testing.assert_allclose(cycle.points[:, 1], 0.5, atol=1e-7)
+
+
+def test_a_round_may_take_two_turns() -> None:
+    """y jumps by the logistic map with r = 3.2: its fixed point repels, its 2-cycle attracts."""
+    r = 3.2
+    once, twice = cycles(carousel(f"{r} y mul 1 y sub mul"))[-2:]
+
+    root = math.sqrt((r + 1.0) * (r - 3.0))
+    pair = [(r + 1.0 - root) / (2.0 * r), (r + 1.0 + root) / (2.0 * r)]
+    assert (once.period, twice.period) == pytest.approx((2.0, 4.0))
+    assert (once.stability, twice.stability) == (Stability.UNSTABLE, Stability.STABLE)
+    assert sorted(set(np.round(twice.points[:, 1], 7))) == pytest.approx(pair, abs=1e-6)
+    assert twice.multipliers[0] == pytest.approx(4.0 + 2.0 * r - r * r, abs=1e-4)
+
+
+@pytest.mark.parametrize(("keep", "lift"), [(0.9, 0.5), (-1.5, 1.0), (4.0, -1.0)])
+def test_a_slanted_guard_against_an_independent_return_map(keep: float, lift: float) -> None:
+    def leaves(y: float) -> float:
+        """The time at which -1 + t + y exp(-t/2)/4 reaches 1."""
+        return float(brentq(lambda t: t - 2.0 + 0.25 * y * math.exp(-0.5 * t), 0.0, 9.0))
+
+    def again(y: float) -> float:
+        return keep * y * math.exp(-0.5 * leaves(y)) + lift
+
+    y = float(brentq(lambda y: again(y) - y, -3.0, 3.0))
+    slope = (again(y + 1e-5) - again(y - 1e-5)) / 2e-5
+
+    [cycle] = cycles(slanted(keep, lift))
+
+    assert cycle.period == pytest.approx(1.5 * leaves(y), rel=1e-9)
+    assert cycle.multipliers[0] == pytest.approx(slope, abs=1e-6)
+    assert cycle.cross_checked[0] == pytest.approx(slope, abs=1e-6)
+    assert not cycle.doubtful
+
+
+@given(st.floats(0.3, 1.2), st.floats(1.4, 2.7))
+@settings(max_examples=10, deadline=None)
+def test_a_thermostat_swings_between_its_limits(low: float, high: float) -> None:
+    [cycle] = cycles(thermostat(low, high))
+
+    warming = math.log((3.0 - low) / (3.0 - high))
+    assert cycle.period == pytest.approx(math.log(high / low) + warming, rel=1e-9)
+    assert (cycle.points.min(), cycle.points.max()) == pytest.approx((low, high))
+    assert cycle.multipliers == ()
+    assert cycle.stability is Stability.STABLE
+
+
+def test_switching_without_end_is_said_with_its_place() -> None:
+    found, [note] = find_hybrid_cycles(hybrid(thermostat(1.5, 1.5)))
+
+    assert found == ()
+    assert "chattering: 100 %" in note
+    assert "between 'off' and 'on' (T = 1.5)" in note
+
+
+def test_a_bouncing_ball_comes_to_rest_by_chattering() -> None:
+    found, notes = find_hybrid_cycles(hybrid(bouncing_ball(0.6)))
+
+    assert found == ()
+    assert any("switch without end of 'flight' (h = " in note for note in notes)
+
+
+def test_a_zero_of_a_mode_that_is_left_before_is_no_fixed_point() -> None:
+    found = portrait(relay(), held={"mode": 0.0})
+
+    assert found.fixed_points == ()
+    assert any("although the field of 'up' is zero there" in note for note in found.notes)
+    [cycle] = found.cycles
+    assert cycle.period == pytest.approx(2.0 * math.log(3.0), rel=1e-9)
+
+
+def test_a_portrait_shows_where_its_mode_is_left_and_paths_through_all_modes() -> None:
+    found = portrait(PATROL, held={"x1": 1.0})
+
+    [line] = found.switching
+    assert (line.mode, line.target) == ("forward", "back")
+    np.testing.assert_allclose(line.lines[0][:, 0], 1.0, atol=1e-9)
+    [cycle] = found.cycles
+    assert set(cycle.modes) == {0, 1}
+    assert found.trajectories
+    for path in found.trajectories:
+        assert np.all(np.diff(path.times) >= 0.0)
+        assert path.points[:, 0].max() <= 1.0 + 1e-9
+    assert any("going = 'forward'" in note for note in found.notes)
+
+
+def test_no_modes_no_hybrid() -> None:
+    view = cut(compiled("pendulum"), None, {})
+
+    assert hybrid_of(view) is None
+
+
+def test_a_mode_is_left_exactly_where_its_guard_is_open() -> None:
+    found = hybrid(PATROL, {"x1": 1.0})
+    points = np.array([[0.999, 0.3], [1.0, 0.3], [1.5, -0.9]])
+
+    assert leaves_at(found, points, 0).tolist() == [False, True, True]
+    assert leaves_at(found, points, 1).tolist() == [False, False, False]
