@@ -53,6 +53,9 @@ CONNECTED: Final = 1e-6
 LINEAR: Final = 0.05
 """The radius round a saddle within which passing by is judged by the linearisation."""
 
+STILL: Final = 1e-9
+"""A stretch that is shorter stands still."""
+
 CLOSE: Final = 0.02
 """A branch that stands still converges to a point that is this close."""
 
@@ -87,6 +90,10 @@ class Stretch:
     times: Array
     points: Array
     ending: Ending
+
+    def until(self, last: int) -> "Stretch":
+        """Only up to the point `last`."""
+        return Stretch(self.times[: last + 1], self.points[: last + 1], self.ending)
 
 
 @final
@@ -141,33 +148,31 @@ def _target(view: Slice, index: int, point: FixedPoint, sign: int) -> Target:
 
 def _followed(view: Slice, ends: Ends, branch: Branch) -> Separatrix:
     """One branch, stretch after stretch, until it comes to an end."""
-    times, points = [np.zeros(1)], [np.asarray(branch.at)[None]]
+    pieces: list[Stretch] = []
+    at, length, away, end = branch.at, 0.0, False, None
     duration = -np.log(branch.distance) / abs(branch.eigenvalue)
-    length, away = 0.0, False
-    end = End(Reaches.NOWHERE_SEEN, -1, -1)
-    for _ in range(ROUNDS):
-        piece = _stretch(view, points[-1][-1], ends.sign * duration)
+    while end is None and len(pieces) < ROUNDS and length < LONGEST:
+        piece = _stretch(view, at, ends.sign * duration)
         far = _has_left(view, piece.points, ends, branch.saddle, away=away)
-        found = _first_end(view, ends, branch, piece, far)
-        away = bool(far[-1])
-        count = len(piece.times) if found is None else found.last + 1
-        times.append(times[-1][-1] + piece.times[1:count])
-        points.append(piece.points[1:count])
-        gone = _length(view, piece.points[:count])
-        length += gone
-        if found is not None:
-            end = found
+        end = _first_end(view, ends, branch, piece, far)
+        piece = piece if end is None else piece.until(end.last)
+        pieces.append(piece)
+        gone = _length(view, piece.points)
+        if piece.ending is not Ending.COMPLETED or gone < STILL:
             break
-        if piece.ending is not Ending.COMPLETED or length > LONGEST:
-            break
-        if gone < 1e-9:
-            break
-        duration *= float(np.clip(STRETCH / gone, 0.25, 4.0))
-    if end.reaches is Reaches.NOWHERE_SEEN:
-        end = _converged(view, ends, points[-1][-1] if len(points[-1]) else points[-2][-1])
-    if end.reaches is Reaches.POINT and end.to in {trap.index for trap in ends.traps}:
-        _run_in(view, ends, end, duration, times, points)
-    return _separatrix(branch, end, np.concatenate(times), np.concatenate(points))
+        at, away, length = piece.points[-1], bool(far[-1]), length + gone
+        duration *= _longer(gone)
+    if end is None:
+        end = _converged(view, ends, pieces[-1].points[-1])
+    place = next((trap.at for trap in ends.traps if trap.index == end.to), None)
+    if end.reaches is Reaches.POINT and place is not None:
+        pieces += _run_in(view, pieces[-1].points[-1], place, ends.sign * duration)
+    return _separatrix(branch, end, pieces)
+
+
+def _longer(gone: float) -> float:
+    """By what the next stretch takes more time than one of length `gone`."""
+    return float(np.clip(STRETCH / gone, 0.25, 4.0))
 
 
 def _stretch(view: Slice, start: Array, duration: float) -> Stretch:
@@ -261,39 +266,38 @@ def _converged(view: Slice, ends: Ends, at: Array) -> End:
     return End(Reaches.POINT, index, -1) if gap < CLOSE else End(Reaches.NOWHERE_SEEN, -1, -1)
 
 
-def _run_in(
-    view: Slice,
-    ends: Ends,
-    end: End,
-    duration: float,
-    times: list[Array],
-    points: list[Array],
-) -> None:
-    """The rest of the way from the edge of a trap to its fixed point, as far as it shows."""
-    place = next(trap.at for trap in ends.traps if trap.index == end.to)
+def _run_in(view: Slice, at: Array, place: Array, duration: float) -> list[Stretch]:
+    """The rest of the way, from within a trap to its fixed point at `place`, as far as it shows."""
+    pieces: list[Stretch] = []
     length = 0.0
-    for _ in range(ROUNDS):
-        last = np.concatenate(points)[-1]
-        piece = _stretch(view, last, ends.sign * duration)
+    while len(pieces) < ROUNDS and length < SHOWN:
+        piece = _stretch(view, at, duration)
         gaps = np.linalg.norm(shortest(view, piece.points - place) / view.width, axis=-1)
         there = gaps < ARRIVED
-        count = int(np.argmax(there)) + 1 if there.any() else len(gaps)
-        times.append(np.concatenate(times)[-1] + piece.times[1:count])
-        points.append(piece.points[1:count])
-        gone = _length(view, piece.points[:count])
-        length += gone
-        if there.any() or length > SHOWN or gone < 1e-9:
-            return
-        duration *= float(np.clip(STRETCH / gone, 0.25, 4.0))
+        pieces.append(piece.until(int(np.argmax(there))) if there.any() else piece)
+        gone = _length(view, piece.points)
+        if there.any() or piece.ending is not Ending.COMPLETED or gone < STILL:
+            break
+        at, length = piece.points[-1], length + gone
+        duration *= _longer(gone)
+    return pieces
 
 
 def _length(view: Slice, points: Array) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0) / view.width, axis=-1).sum())
 
 
-def _separatrix(branch: Branch, end: End, times: Array, points: Array) -> Separatrix:
-    if branch.stable:
-        times, points = times[::-1], points[::-1]
+def _separatrix(branch: Branch, end: End, pieces: list[Stretch]) -> Separatrix:
+    """The pieces, one after the other, in the direction of time."""
+    begun = np.cumsum([0.0, *(piece.times[-1] for piece in pieces[:-1])])
+    times = np.concatenate([[0.0], *(t + p.times[1:] for t, p in zip(begun, pieces, strict=True))])
+    points = np.concatenate([branch.at[None], *(piece.points[1:] for piece in pieces)])
+    order = slice(None, None, -1 if branch.stable else 1)
     return Separatrix(
-        branch.saddle, branch.stable, end.reaches, end.to, frozen(times), frozen(points)
+        branch.saddle,
+        branch.stable,
+        end.reaches,
+        end.to,
+        frozen(times[order]),
+        frozen(points[order]),
     )
