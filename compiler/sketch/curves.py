@@ -168,24 +168,25 @@ class _Edge:
         angle = np.arctan2(foot[1], foot[0])
         return _Edge(float(np.hypot(foot[0], foot[1])), float(direction * (angle - phase)))
 
-    def at(self, t: Array) -> tuple[Array, Array, Array]:
-        """The radius and its first two derivatives by t."""
+    def at(self, t: Array) -> tuple[Array, Array, Array, Array]:
+        """The radius and its first three derivatives by t."""
         secant, tangent = 1.0 / np.cos(t - self.foot), np.tan(t - self.foot)
         r = self.near * secant
-        return r, r * tangent, r * (secant**2 + tangent**2)
+        third = r * tangent * (5.0 * secant**2 + tangent**2)
+        return r, r * tangent, r * (secant**2 + tangent**2), third
 
 
 def _hermite(s: Array, left: list[float], right: list[float], half: float) -> Array:
-    """The polynomial of degree 5 on [-1, 1] with value, slope and bend given at both ends."""
-    system = [_monomials(end, order) for end in (-1.0, 1.0) for order in range(3)]
-    wanted = [side[order] * half**order for side in (left, right) for order in range(3)]
+    """The polynomial of degree 7 on [-1, 1] with value and three derivatives at both ends."""
+    system = [_monomials(end, order) for end in (-1.0, 1.0) for order in range(4)]
+    wanted = [side[order] * half**order for side in (left, right) for order in range(4)]
     coefficients = np.linalg.solve(np.array(system), np.array(wanted))
     return np.asarray(np.polynomial.polynomial.polyval(s, coefficients), dtype=np.float64)
 
 
 def _monomials(x: float, order: int) -> Array:
-    """The derivatives of 1, x, ..., x^5."""
-    basis = np.eye(6)
+    """The derivatives of 1, x, ..., x^7."""
+    basis = np.eye(8)
     return np.array(
         [
             np.polynomial.polynomial.polyval(x, np.polynomial.polynomial.polyder(row, order))

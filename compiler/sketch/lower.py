@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise, product
 from typing import Final, final
 
 import numpy as np
@@ -12,12 +13,13 @@ from compiler.lower_parts import code_of
 from compiler.plan import Plan, Sheet, Use
 from compiler.sketch.algebra import minus, over, split, times
 from compiler.sketch.fill import Filled
-from compiler.sketch.frame import Frame, SketchRefusedError
+from compiler.sketch.frame import BEND, Frame, SketchRefusedError
 from compiler.tabulate import Sampler
 from runtime.arrays import Array
 from runtime.program import Coordinate
 from spec_schema.expressions.bounds import bounds
 from spec_schema.expressions.evaluate import evaluate
+from spec_schema.expressions.rewrite import names_in
 from spec_schema.expressions.tree import Apply, Expr, Name, Number
 from spec_schema.places import Path
 
@@ -25,6 +27,8 @@ SLACK: Final = 1e-9
 """By so much a table reaches beyond the values of its coordinate, for the rounding of both."""
 SKETCH: Final[Path] = ("field", "sketch")
 MOST_AXES: Final = 5
+PARTS: Final = 4
+"""Into how many parts a control's domain is cut to bound a coefficient."""
 
 
 @final
@@ -88,8 +92,10 @@ def _columns(filled: Filled) -> tuple[_Column, ...]:
 
 
 def _largest(coefficient: Expr, frame: Frame) -> float:
-    low, high = bounds(coefficient, frame.box)
-    largest = max(abs(low), abs(high))
+    reads = [name for name in frame.box if name in names_in(coefficient)]
+    pieces = product(*(_halves(*frame.box[name]) for name in reads))
+    limits = [bounds(coefficient, dict(zip(reads, piece, strict=True))) for piece in pieces]
+    largest = max(max(abs(low), abs(high)) for low, high in limits)
     if not math.isfinite(largest):
         values = [abs(evaluate(coefficient, sample)) for sample in frame.samples]
         if not np.isfinite(values).all():
@@ -97,6 +103,12 @@ def _largest(coefficient: Expr, frame: Frame) -> float:
             raise SketchRefusedError("S264", SKETCH, message, "shrink the domain of a control")
         largest = 2.0 * max(values)
     return largest
+
+
+def _halves(low: float, high: float) -> tuple[tuple[float, float], ...]:
+    """An interval in parts, on which bounds are sharper."""
+    ends = [low + (high - low) * i / PARTS for i in range(PARTS + 1)]
+    return tuple(pairwise(ends))
 
 
 def _sampler(filled: Filled, columns: tuple[_Column, ...]) -> Sampler:
@@ -124,14 +136,14 @@ def _sampler(filled: Filled, columns: tuple[_Column, ...]) -> Sampler:
 
 
 def _straightened(u: Array) -> Array:
-    """Q of u = q / sqrt(1 + q**2)."""
+    """Coordinates q of u = q / sqrt(4 + q**2)."""
     inner = np.clip(u, SLACK - 1.0, 1.0 - SLACK)
-    found: Array = inner / np.sqrt(1.0 - inner**2)
+    found: Array = BEND * inner / np.sqrt(1.0 - inner**2)
     return found
 
 
 def _coordinates(frame: Frame, declared: Declarations, origin: str) -> tuple[Coordinate, ...]:
-    """U = q / sqrt(1 + q**2) for each axis of the plane."""
+    """The coordinates u = q / sqrt(4 + q**2) for each axis of the plane."""
     taken = set(declared.register)
     found = []
     for axis, state in enumerate(frame.over):
@@ -140,7 +152,7 @@ def _coordinates(frame: Frame, declared: Declarations, origin: str) -> tuple[Coo
             name += "_"
         taken.add(name)
         q = over(minus(Name(state), frame.middle[axis]), frame.half[axis])
-        root = Apply("sqrt", (Apply("add", (Number(1.0), Apply("mul", (q, q)))),))
+        root = Apply("sqrt", (Apply("add", (Number(BEND**2), Apply("mul", (q, q)))),))
         ends = (_bent(float(frame.reach[axis, side])) for side in (0, 1))
         low, high = next(ends) - SLACK, next(ends) + SLACK
         found.append(Coordinate(name, code_of(Apply("div", (q, root))), low, high, origin))
@@ -148,4 +160,4 @@ def _coordinates(frame: Frame, declared: Declarations, origin: str) -> tuple[Coo
 
 
 def _bent(q: float) -> float:
-    return math.copysign(1.0, q) if math.isinf(q) else q / math.sqrt(1.0 + q * q)
+    return math.copysign(1.0, q) if math.isinf(q) else q / math.hypot(BEND, q)

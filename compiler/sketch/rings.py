@@ -25,8 +25,10 @@ ROOM: Final = 0.8
 """How much of the narrowest gap between two orbits their own neighborhoods may take."""
 AROUND: Final = 0.8
 """How far the circle around all is from the outermost orbit, in that orbit's least radius."""
-FADE: Final = 1.6
+FADE: Final = 2.0
 """Beyond so many of its radii the field points straight inward or outward."""
+CALM: Final = 1.2
+"""Over so many levels beyond the last orbit the going round comes to rest."""
 NEWTON: Final = 10
 """Newton steps to a place's level; one that leaves the bracket becomes a halving."""
 
@@ -84,7 +86,8 @@ class RingModel:
             for i, draws in enumerate(self.attracts, start=1)
         ]
         for i, curve in enumerate(self.curves, start=1):
-            pace = curve.pace(theta) * holds[i][:, np.newaxis]
+            still = smooth_step((level - last - HOLD) / CALM)
+            pace = curve.pace(theta) * (holds[i] * (1.0 - still))[:, np.newaxis]
             if i == 1 and self.turning:
                 pace = pace + curve.direction * curve.mean * holds[0][:, np.newaxis]
             found += [pace[:, e, np.newaxis] * around for e in range(pace.shape[1])]
