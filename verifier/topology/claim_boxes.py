@@ -12,6 +12,7 @@ from typing import Final, final
 
 import numpy as np
 
+from runtime.arrays import Array
 from runtime.intervals import Interval, add, exactly, multiply, square, subtract
 from runtime.jet_machine import run_over_boxes
 from runtime.jets import Jet, constant
@@ -22,6 +23,7 @@ from verifier.topology.features import PointKind
 from verifier.topology.findings import Settings
 from verifier.topology.proof import Proof, prove
 from verifier.topology.slices import Slice, cut
+from verifier.topology.zero_bounds import zero_within
 
 PIECES: Final = {1: 16, 2: 8, 3: 4, 4: 3}
 """Pieces per control that a domain is cut into at first, by the number of controls; else 2.
@@ -31,6 +33,9 @@ A box that is too wide takes ten times as long as one in which all zeros are fou
 
 WORK: Final = 800
 """What may be spent on one claim: 1 for a box in which all zeros are found, 10 for others."""
+
+MOST_CUTS: Final = 192
+"""Into so many pieces a box of controls is cut at most to see where a zero is."""
 
 SMALLEST: Final = 2.0**-14
 """Boxes of this share of the claim's domain are not halved any more."""
@@ -214,37 +219,68 @@ class _Prover:
         return frozenset({focus if turns else node})
 
     def _place(self, claim: Claim, i: int) -> Fit:
-        """Whether zero i is at the claim's place for all controls of the box."""
+        """Whether zero i is at the claim's place for all controls of the box.
+
+        The place and the zero move with the controls, so the box is cut until it is clear.
+        """
+        if not claim.places:
+            return Fit.YES
+        zero, radius = self._proof.zeros[i], self._proof.radii[i]
+        waiting = deque([(self._controls, zero - radius, zero + radius)])
+        fits: set[Fit] = set()
+        for _ in range(MOST_CUTS):
+            controls, low, high = waiting.popleft()
+            fit = self._placed(claim, controls, low, high)
+            if fit is Fit.MAYBE and not self._claim.over:
+                return fit
+            if fit is Fit.MAYBE:
+                for half in self._cut(controls):
+                    waiting.append((half, *zero_within(self._view, half, low, high)))
+            else:
+                fits.add(fit)
+            if len(fits) > 1 or not waiting:
+                break
+        return fits.pop() if len(fits) == 1 and not waiting else Fit.MAYBE
+
+    def _placed(self, claim: Claim, controls: Array, low: Array, high: Array) -> Fit:
+        """Whether a zero between low and high (m,) is at the claim's place."""
         fit = Fit.YES
-        for place in claim.places:
-            names = [axis.name for axis in self._view.axes]
+        names = [axis.name for axis in self._view.axes]
+        register = self._register(controls)
+        jets = run_over_boxes([place.at for place in claim.places], register)
+        for place, jet in zip(claim.places, jets, strict=True):
             j = names.index(place.state)
             axis = self._view.axes[j]
-            [jet] = run_over_boxes([place.at], self._register())
-            low, high = float(np.min(jet.value.low)), float(np.max(jet.value.high))
-            off = float(self._proof.zeros[i, j]) - 0.5 * (low + high)
+            off = subtract(Interval(low[j : j + 1], high[j : j + 1]), jet.value)
+            first, last = float(np.min(off.low)), float(np.max(off.high))
             if axis.periodic:
-                off -= axis.width * round(off / axis.width)
-            room = float(self._proof.radii[i, j]) + 0.5 * (high - low)
-            if not bool(np.all(jet.sure)):
-                fit = Fit.MAYBE
-                continue
-            if abs(off) - room > place.within:
+                turns = axis.width * round(0.5 * (first + last) / axis.width)
+                first, last = first - turns, last - turns
+            # An ulp of the subtraction is far below what anybody asks for.
+            if first > place.within or last < -place.within:
                 return Fit.NO
-            if not abs(off) + room <= place.within * (1.0 - 1e-12):
+            if not (np.all(jet.sure) and -place.within <= first and last <= place.within):
                 fit = Fit.MAYBE
         return fit
 
-    def _register(self) -> dict[str, Jet]:
-        lows, highs = self._controls
-        controls = {
+    def _cut(self, controls: Array) -> list[Array]:
+        """The box of controls in two, across its widest side as a share of the whole box."""
+        whole = self._controls[1] - self._controls[0]
+        widths = np.where(whole > 0.0, controls[1] - controls[0], 0.0) / np.where(whole, whole, 1.0)
+        i = int(np.argmax(widths))
+        middle = 0.5 * (controls[0, i] + controls[1, i])
+        lower, upper = controls.copy(), controls.copy()
+        lower[1, i] = upper[0, i] = middle
+        return [lower, upper]
+
+    def _register(self, controls: Array) -> dict[str, Jet]:
+        lows, highs = controls
+        between = {
             control.name: constant(Interval(np.array([low]), np.array([high])))
             for control, low, high in zip(self._program.controls, lows, highs, strict=True)
         }
-        constants = {
-            c.name: constant(exactly(np.array([c.value]))) for c in self._program.constants
-        }
-        return {**controls, **constants}
+        given = ((c.name, exactly(np.array([c.value]))) for c in self._program.constants)
+        return {**between, **{name: constant(value) for name, value in given}}
 
 
 def _turns(slopes: Interval, i: int) -> bool | None:
@@ -263,4 +299,4 @@ def _turns(slopes: Interval, i: int) -> bool | None:
     discriminant = add(square(subtract(entry(0, 0), entry(1, 1))), skew)
     if float(discriminant.high[0]) < 0.0:
         return True
-    return False if float(discriminant.low[0]) > 0.0 else None
+    return False if float(discriminant.low[0]) >= 0.0 else None
