@@ -6,7 +6,7 @@ from pathlib import Path
 
 from compiler.quantities import rate_text
 from runtime.arrays import Array
-from runtime.program import Program, Table, Unit
+from runtime.program import Kind, Program, Table, Unit
 from runtime.rollout import Ending, Rollout
 
 
@@ -82,7 +82,18 @@ def rollout_record(program: Program, rollout: Rollout) -> dict[str, object]:
         "ending": str(rollout.ending),
         "ended_at": float(rollout.ended_at),
         "detail": rollout.detail,
+        "switches": _switches(program, rollout),
     }
+
+
+def _switches(program: Program, rollout: Rollout) -> list[dict[str, object]]:
+    """When the mode changed, and from what to what."""
+    values = next((s.values for s in program.states if s.name == program.field.mode), ())
+    found = rollout.switches
+    return [
+        {"t": float(time), "from": values[left], "to": values[entered]}
+        for time, left, entered in zip(found.times, found.left, found.entered, strict=True)
+    ]
 
 
 def _column(values: Array, unit: Unit) -> list[float | None]:
@@ -97,6 +108,12 @@ def rollout_summary(program: Program, rollout: Rollout) -> str:
         rows.append(f"  {rollout.detail}")
     rows.append(f"  {'':16} {'start':>14} {'end':>14}")
     for i, state in enumerate(program.states):
+        if state.kind is Kind.DISCRETE:
+            names = (state.values[int(x[i])] for x in (first, last))
+            rows.append(f"  {state.name:16} " + " ".join(f"{name:>14}" for name in names))
+            continue
         start, end = first[i] / state.unit.scale, last[i] / state.unit.scale
         rows.append(f"  {state.name:16} {start:14.6g} {end:14.6g}  {state.unit.text}")
+    if len(rollout.switches):
+        rows.append(f"  {program.field.mode} changed {len(rollout.switches)} times")
     return "\n".join(rows)
