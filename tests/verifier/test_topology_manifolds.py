@@ -70,6 +70,16 @@ def test_a_bent_manifold_is_followed_along_its_closed_form() -> None:
             assert x == pytest.approx(np.zeros(len(x)), abs=1e-8)
         else:
             assert y == pytest.approx(x * x / 3.0, abs=1e-8)
+            # Two orders are all there is here, so the branch begins as far out as it may.
+            assert abs(x[0]) == pytest.approx(0.08, rel=0.01)
+
+
+def test_a_manifold_of_third_order_is_begun_close_enough_to_lie_on_it() -> None:
+    # x' = x, y' = -y + x³: y = x³ / 4.
+    for s in separatrices(plane("x", "x x mul x mul y sub")):
+        if not s.stable:
+            x, y = s.points.T
+            assert y == pytest.approx(x**3 / 4.0, abs=1e-8)
 
 
 def test_the_separatrix_of_a_frictionless_pendulum_has_the_energy_of_its_saddle() -> None:
@@ -272,6 +282,7 @@ def test_a_maps_unstable_manifold_follows_its_closed_form() -> None:
             assert abs(y[0]) == pytest.approx(2.0, abs=1e-2)
         else:
             assert y == pytest.approx(2.0 / 7.0 * x * x, abs=1e-8)
+            assert abs(x[0]) == pytest.approx(0.04, rel=0.01)
             assert abs(x[-1]) == pytest.approx(2.0, abs=1e-2)
 
 
