@@ -74,17 +74,18 @@ def sweep(
     return Sweep(name, panels)
 
 
-def swept_values(program: Program, name: str, text: str) -> tuple[float, ...]:
+def swept_values(program: Program, name: str, text: str) -> tuple[Value, ...]:
     """`0.1:0.8:6` as six values of a control or state in its own unit; `5` as five in its domain.
 
     The ends may have units: `10 cm/s:80 cm/s:6`. Slices of a whole domain are as many middles.
+    `a,b,c` are values one by one, as the names of a discrete state's.
 
     Raises:
         SpecError: another form, an unknown name, values outside the domain.
     """
     part = _part(program, name)
-    if isinstance(part, State) and part.kind is Kind.DISCRETE:
-        raise fault("V342", f"{name}={text}", f"'{name}' is discrete", "hold it by --set instead")
+    if "," in text or (isinstance(part, State) and part.kind is Kind.DISCRETE):
+        return tuple(value.strip() for value in text.split(","))
     pieces = [piece.strip() for piece in text.split(":")]
     if len(pieces) not in {1, 3} or not pieces[-1].isdigit() or int(pieces[-1]) < 1:
         message = "this is no range of values"

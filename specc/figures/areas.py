@@ -5,16 +5,19 @@ from typing import Final
 import numpy as np
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Patch, Rectangle
-from scipy.ndimage import zoom
+from scipy.ndimage import gaussian_filter, zoom
 
-from runtime.arrays import Array, Integers
+from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry
 from specc.figures.panel import Panel
-from specc.figures.quantities import number, percent
+from specc.figures.quantities import number
 from verifier.topology.features import Attractor, Basins, Portrait
 
 FINER: Final = 4
 """Each cell of the basins is drawn as so many squared, its edge between the centres smoothed."""
+
+BLUR: Final = 0.8
+"""The width of the blur that smooths the edge, in cells."""
 
 SMALLEST: Final = 0.09
 """An undecided box is drawn at least this large, in inches."""
@@ -55,14 +58,14 @@ def basin_entries(panel: Panel, portrait: Portrait) -> list[Entry]:
         return [Entry("basins of attraction", (_patch(tint(panel, 0), faint),))]
     entries = [
         Entry(
-            f"goes to {attractor_name(portrait, a)}: {percent(a.share)}",
+            f"goes to {attractor_name(portrait, a)}: {share_text(a.share)}",
             (_patch(tint(panel, k), faint),),
         )
         for k, a in enumerate(basins.attractors)
     ]
     if basins.leaves > 0.0:
         patch = _patch(panel.palette.paper, faint)
-        entries.append(Entry(f"leaves the domain: {percent(basins.leaves)}", (patch,)))
+        entries.append(Entry(f"leaves the domain: {share_text(basins.leaves)}", (patch,)))
     return entries
 
 
@@ -71,9 +74,20 @@ def attractor_name(portrait: Portrait, attractor: Attractor) -> str:
     if attractor.is_cycle:
         return f"the cycle of {number(portrait.cycles[attractor.index].period)} s"
     point = portrait.fixed_points[attractor.index]
-    scales = [axis.unit.scale for axis in portrait.axes]
-    place = ", ".join(number(v / s) for v, s in zip(point.at.tolist(), scales, strict=True))
-    return f"({place})"
+    pairs = list(zip(portrait.axes, point.at.tolist(), strict=True))
+    values = [number(value / axis.unit.scale) for axis, value in pairs]
+    if len(pairs) == 1:
+        return f"{pairs[0][0].name} = {values[0]}"
+    return f"({', '.join(values)})"
+
+
+def share_text(share: float) -> str:
+    """A share of the domain in per cent, with one digit behind the point.
+
+    >>> share_text(0.4669)
+    '46.7 %'
+    """
+    return f"{100.0 * share:.1f} %"
 
 
 def tint(panel: Panel, index: int) -> str:
@@ -96,10 +110,15 @@ def _picture(panel: Panel, basins: Basins) -> Array:
 def _smoothed(labels: Integers, present: list[int]) -> Integers:
     """For each finer cell the index of the label that surrounds it most."""
     weights = [
-        zoom((labels == label).astype(np.float64), FINER, order=1, mode="nearest", grid_mode=True)
+        zoom(_blurred(labels == label), FINER, order=1, mode="nearest", grid_mode=True)
         for label in present
     ]
     return np.asarray(np.argmax(weights, axis=0))
+
+
+def _blurred(inside: Booleans) -> Array:
+    """Whether a place is inside, as a share: takes the stairs off the edge of a basin."""
+    return np.asarray(gaussian_filter(inside.astype(np.float64), BLUR, mode="nearest"))
 
 
 def _ground(panel: Panel, label: int) -> tuple[float, float, float, float]:

@@ -14,6 +14,9 @@ from verifier.topology.features import AxisRange
 SAME_SCALE: Final = (0.4, 2.5)
 """Two axes of one unit are drawn to the same scale if their lengths compare like this."""
 
+SAME_NUMBERS: Final = (0.66, 1.5)
+"""Two axes without units, which need not be of one kind, if they compare like this."""
+
 
 def shown(axes: tuple[AxisRange, ...], points: Array) -> Array:
     """Points (..., m) in the user's units."""
@@ -37,7 +40,7 @@ def name_y(axes: Axes, state: AxisRange) -> None:
 def same_scale(states: tuple[AxisRange, ...]) -> bool:
     """Whether both axes show the same kind of length and can share one scale."""
     x, y = states
-    low, high = SAME_SCALE
+    low, high = SAME_NUMBERS if x.unit.text in {"", "1"} else SAME_SCALE
     return x.unit.text == y.unit.text and low < x.width / y.width < high
 
 

@@ -9,7 +9,7 @@ from typing import Final, Literal, TypeAlias, final
 
 import numpy as np
 
-from runtime.arrays import Array
+from runtime.arrays import Array, frozen
 from specc.figures.legend import Entry, Look, line_entry
 from specc.figures.panel import Panel, draw_heads, places_along
 from specc.figures.quantities import rate_of
@@ -41,6 +41,12 @@ APART: Final = 2.2
 
 CLEAR: Final = 0.7
 """How far an arrowhead stays from those of other curves of its kind, in inches."""
+
+
+LEAP_DASHES: Final = (0.0, (0.9, 1.5))
+"""Of what happens at once: the state jumps where the mode changes."""
+
+NOTHING: Final = frozen(np.empty((0, 2)))
 
 
 @final
@@ -92,8 +98,15 @@ def draw_trajectories(panel: Panel, portrait: Portrait) -> list[Entry]:
             panel.axes.plot(*points.T, markersize=2.2 * panel.weight, zorder=4, **look)
         return [line_entry("orbit", markersize=2.8, **look)]
     stroke, heads = Stroke(color, "-", 0.9), list[Array]()
+    leap = Stroke(color, LEAP_DASHES, 0.7)
+    heavy = [c.points for c in portrait.cycles] + [s.points for s in portrait.separatrices]
+    clear_of = panel.inches(np.concatenate(heavy)) if heavy else np.empty((0, 2))
     for path in portrait.trajectories:
-        draw_path(panel, path.points, stroke, 4.0, heads)
+        pieces, leaps = at_jumps(path.times, path.points)
+        for piece in pieces:
+            draw_path(panel, piece, stroke, 4.0, heads, clear_of)
+        for points in leaps:
+            draw_path(panel, points, leap, 4.0, heads, clear_of)
     return [line_entry("trajectory", **stroke.look)]
 
 
@@ -121,11 +134,12 @@ def draw_cycles(panel: Panel, portrait: Portrait) -> list[Entry]:
 def _draw_cycle(panel: Panel, cycle: Cycle) -> Entry:
     width = NEUTRAL_WIDTH if cycle.stability is Stability.NEUTRAL else CYCLE_WIDTH
     stroke = Stroke(panel.palette.cycle, CYCLE_DASHES[cycle.stability], width)
-    leap = Stroke(panel.palette.cycle, (0.0, (0.6, 1.6)), 0.6 * width)
+    leap = Stroke(panel.palette.cycle, LEAP_DASHES, 0.8 * width)
     heads: list[Array] = []
-    for piece in _between_jumps(cycle):
+    pieces, leaps = at_jumps(cycle.times, cycle.points)
+    for piece in pieces:
         draw_path(panel, piece, stroke, 6.0, heads)
-    for jump in _jumps(cycle):
+    for jump in leaps:
         draw_path(panel, jump, leap, 6.0, heads)
     return line_entry(f"{cycle.stability} cycle", **stroke.look)
 
@@ -144,24 +158,17 @@ def _draw_orbit_of_map(panel: Panel, cycle: Cycle) -> Entry:
     return line_entry(label, markersize=6.5, **look)
 
 
-def jump_indices(cycle: Cycle) -> list[int]:
-    """After which points a cycle through modes jumps: the mode changes and the place does, too."""
-    modes = np.array(cycle.modes)
-    if not modes.size:
-        return []
-    reach = np.ptp(cycle.points, axis=0).max()
-    leap = np.abs(np.diff(cycle.points, axis=0)).max(axis=-1) > 0.01 * reach
-    still = np.diff(cycle.times) <= 1e-9 * cycle.period
-    return [int(k) for k in np.flatnonzero(leap & still)]
+def at_jumps(times: Array, points: Array) -> tuple[list[Array], list[Array]]:
+    """A path (T, m) as pieces between its jumps, and each jump as a line of its own.
 
-
-def _between_jumps(cycle: Cycle) -> list[Array]:
-    ends = [k + 1 for k in jump_indices(cycle)]
-    return [piece for piece in np.split(cycle.points, ends) if len(piece) > 1]
-
-
-def _jumps(cycle: Cycle) -> list[Array]:
-    return [np.linspace(cycle.points[k], cycle.points[k + 1], 9) for k in jump_indices(cycle)]
+    It jumps where its place changes and time stands still: a mode was left, and resets applied.
+    """
+    reach = np.ptp(points, axis=0)
+    leap = np.abs(np.diff(points, axis=0)) > 0.01 * np.where(reach > 0.0, reach, np.inf)
+    still = np.diff(times) <= 1e-9 * np.ptp(times)
+    jumps = np.flatnonzero(leap.any(axis=-1) & still)
+    pieces = [piece for piece in np.split(points, jumps + 1) if len(piece) > 1]
+    return pieces, [np.linspace(points[k], points[k + 1], 9) for k in jumps.tolist()]
 
 
 def draw_switching(panel: Panel, portrait: Portrait) -> list[Entry]:
@@ -185,11 +192,12 @@ def draw_path(
     stroke: Stroke,
     zorder: float,
     heads: list[Array],
+    clear_of: Array = NOTHING,
 ) -> None:
     """A path (T, 2) in the direction of time, cut at seams, with arrowheads along it.
 
     heads: where arrowheads of its kind stand already, in inches; new ones are added, and keep
-    away from them.
+    away from them. clear_of: (k, 2) points of heavier curves that would hide them, in inches.
     """
     places, directions = [], []
     for piece in panel.pieces(points):
@@ -197,7 +205,8 @@ def draw_path(
         inches = panel.inches(piece)
         for k in places_along(inches, APART).tolist():
             direction = inches[k + 1] - inches[k - 1]
-            if np.any(direction) and _is_far(inches[k], heads, CLEAR * panel.weight):
+            is_clear = _is_far(inches[k], clear_of, 1.2 * HEAD)
+            if np.any(direction) and is_clear and _is_far(inches[k], heads, CLEAR * panel.weight):
                 places.append(inches[k])
                 directions.append(direction)
                 heads.append(inches[k])
@@ -206,5 +215,6 @@ def draw_path(
     draw_heads(panel, at, along, size, stroke.color, zorder + 0.1)
 
 
-def _is_far(place: Array, others: list[Array], distance: float) -> bool:
-    return all(np.hypot(*(place - other)) > distance for other in others)
+def _is_far(place: Array, others: Array | list[Array], distance: float) -> bool:
+    gaps = np.reshape(others, (-1, 2)) - place
+    return not gaps.size or float(np.hypot(gaps[:, 0], gaps[:, 1]).min()) > distance

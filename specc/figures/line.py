@@ -9,12 +9,12 @@ from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from runtime.program import Unit
-from specc.figures.areas import ALL, attractor_name
+from specc.figures.areas import ALL, attractor_name, share_text
 from specc.figures.axes_of_states import name_x, name_y
 from specc.figures.legend import Entry, Look, line_entry
 from specc.figures.markers import cross, mark, ring
 from specc.figures.palettes import Palette
-from specc.figures.quantities import axis_label, percent, rate_of
+from specc.figures.quantities import axis_label, rate_of
 from specc.figures.style import bare
 from verifier.topology.features import Cycle, Portrait, Standing
 
@@ -135,7 +135,7 @@ def _basins(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
             axes.axvspan(edges[a], edges[b], color=color, linewidth=0.0, zorder=0)
     return [
         Entry(
-            f"goes to {attractor_name(portrait, a)}: {percent(a.share)}",
+            f"goes to {attractor_name(portrait, a)}: {share_text(a.share)}",
             (Patch(facecolor=palette.tints[k % len(palette.tints)], edgecolor=palette.faint),),
         )
         for k, a in enumerate(basins.attractors)

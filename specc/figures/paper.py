@@ -47,7 +47,8 @@ class Heading:
 
 def heading(title: str, above: list[str], below: list[str], width: float) -> Heading:
     """The lines wrapped to `width` inches; at most three lines are kept of each sentence."""
-    return Heading(_spaced(title), _wrapped(above, width), _wrapped(below, width))
+    small = [line[:1].upper() + line[1:] for line in below]
+    return Heading(_spaced(title), _wrapped(above, width), _wrapped(small, width))
 
 
 def new_figure(width: float, height: float, palette: Palette) -> Figure:
