@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from runtime.arrays import Array, frozen
+from runtime.code import Code
 from runtime.program import Kind, Program
 from tests.verifier.topology_scenes import (
     OSCILLATOR,
@@ -124,6 +126,28 @@ def test_an_oscillators_cycle_has_the_period_and_the_multiplier_of_an_independen
     assert math.log(cycle.multipliers[0].real) == pytest.approx(logarithm, rel=1e-6)
     assert cycle.stability is Stability.STABLE
     assert not cycle.doubtful
+
+
+@pytest.mark.parametrize("mu", [0.3, 3.0, 8.0])
+def test_time_turned_round_keeps_the_cycle_and_inverts_its_multiplier(mu: float) -> None:
+    program = swinging(mu, "x")
+    field = program.field
+    turned = tuple(Code(f"{code.text} neg") for code in field.formula or ())
+
+    (ahead,) = cycles_of(program, ORIGIN)
+    (behind,) = cycles_of(replace(program, field=replace(field, formula=turned)), ORIGIN)
+
+    assert behind.stability is Stability.UNSTABLE
+    assert behind.period == pytest.approx(ahead.period, rel=1e-9)
+    logarithms = [math.log(cycle.multipliers[0].real) for cycle in (ahead, behind)]
+    assert logarithms[1] == pytest.approx(-logarithms[0], rel=1e-6)
+    # Its points are in the order of its own time: x' = -v.
+    steps = np.diff(behind.points[:, 0])
+    middle = 0.5 * (behind.points[1:, 1] + behind.points[:-1, 1])
+    clear = np.abs(middle) > 0.1
+    assert np.all((steps * middle < 0.0)[clear])
+    assert np.all(np.diff(behind.times) > 0.0)
+    assert (behind.times[0], behind.times[-1]) == pytest.approx((0.0, behind.period))
 
 
 def test_van_der_pols_amplitude_is_the_published_one() -> None:

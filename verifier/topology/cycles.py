@@ -12,7 +12,7 @@ import numpy as np
 
 from runtime.arrays import Array, frozen
 from verifier.topology.features import Cycle, FixedPoint, PointKind, Stability
-from verifier.topology.floquet import multipliers, stability
+from verifier.topology.floquet import inverted, multipliers, stability
 from verifier.topology.limit_sets import recurrences
 from verifier.topology.map_cycles import find_map_cycles
 from verifier.topology.motion import moved, pace
@@ -80,7 +80,9 @@ def find_cycles(
     found = _refined(view, candidates, [])
     if not notes:
         for start, period in recurrences(view, fixed_points, tempo):
-            found = _refined(view, [Candidate(start, period, -1, touching=False)], found)
+            found = _refined(
+                view, [Candidate(start, period, -1, period < 0.0, touching=False)], found
+            )
     if len(view.axes) > 2:
         notes.append(SADDLES_UNSEEN)
     lasting = [cycle for cycle in found if cycle.stability is not Stability.NEUTRAL]
@@ -127,7 +129,7 @@ def _refined(view: Slice, candidates: list[Candidate], known: list[Cycle]) -> li
     claimed: set[tuple[int, int, bool]] = set()
     for candidate in candidates:
         twin = _twin(view, found, candidate.start, abs(candidate.period), SAME)
-        key = (candidate.section, twin, candidate.period > 0.0)
+        key = (candidate.section, twin, candidate.backwards)
         # Two candidates of one section near one cycle are two cycles near one another.
         if twin >= 0 and (candidate.section < 0 or key not in claimed):
             claimed.add(key)
@@ -137,7 +139,7 @@ def _refined(view: Slice, candidates: list[Candidate], known: list[Cycle]) -> li
             continue
         if not _is_known(view, found, cycle):
             found.append(cycle)
-            claimed.add((candidate.section, len(found) - 1, candidate.period > 0.0))
+            claimed.add((candidate.section, len(found) - 1, candidate.backwards))
     return found
 
 
@@ -184,31 +186,42 @@ def _cycle(view: Slice, found: Closed, *, touching: bool) -> Cycle | None:
     duration = found.period / SEGMENTS
     values, second, doubtful = multipliers(view, found.starts, duration, TOLERANCE)
     times, points = _drawn(view, found)
-    if not np.all(np.isfinite(points)) or not np.all(np.isfinite(values)):
+    if not np.all(np.isfinite(points)) or not np.all(np.isfinite([*values, *second])):
         return None
-    error = float(np.max(view.accuracy / view.width)) * found.period
-    trusted = second if doubtful and np.all(np.isfinite(second)) else values
-    kind = Stability.SEMI_STABLE if touching else stability(trusted, NEUTRAL + error)
+    turns, period = found.turns, float(abs(found.period))
+    if found.period < 0.0:
+        values, second, turns = inverted(values), inverted(second), -turns
+        times, points = (times - times[-1])[::-1], _within(view, points[::-1])
+    error = float(np.max(view.accuracy / view.width)) * period
+    judged = stability(second if doubtful else values, NEUTRAL + error)
     return Cycle(
         times=frozen(times),
         points=frozen(points),
-        period=found.period,
-        stability=kind,
+        period=period,
+        stability=Stability.SEMI_STABLE if touching else judged,
         multipliers=values,
         cross_checked=second,
         doubtful=doubtful,
-        turns=tuple(int(turn) for turn in found.turns),
+        turns=tuple(int(turn) for turn in turns),
         modes=(),
     )
 
 
+def _within(view: Slice, points: Array) -> Array:
+    """A path (T, m), moved by whole turns so that it begins within the domain."""
+    return np.asarray(points + (wrapped(view, points[0]) - points[0]))
+
+
 def _drawn(view: Slice, found: Closed) -> tuple[Array, Array]:
-    """Times (T,) and points (T, m) over one period, evenly spread along the cycle and in time."""
+    """Times (T,) and points (T, m) over one period, evenly spread along the cycle and in time.
+
+    In the order in which it was found: times fall where it was followed backwards.
+    """
     duration = found.period / SEGMENTS
     clock = np.linspace(0.0, duration, FINE + 1)
     paths = moved(view, found.starts, clock, TOLERANCE)[:, :-1].reshape(-1, len(view.axes))
     times = (np.arange(SEGMENTS)[:, None] * duration + clock[:-1]).ravel()
-    paths += wrapped(view, paths[0]) - paths[0]
+    paths = _within(view, paths)
     points = np.concatenate([paths, paths[:1] + found.turns * view.width])
     times = np.append(times, found.period)
     steps = np.linalg.norm(np.diff(points, axis=0) / view.width, axis=-1) / STRIDE

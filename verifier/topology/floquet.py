@@ -30,6 +30,9 @@ TAYLOR: Final = 12
 NUDGE: Final = 1e-5
 """How far starts are displaced, in widths, where segments are differentiated by differences."""
 
+LARGEST: Final = 700.0
+"""Logarithms of multipliers beyond this are not numbers of the machine any more."""
+
 AGREEMENT: Final = 1e-4
 """Multipliers by two methods that differ by more than this share are doubtful."""
 
@@ -81,10 +84,16 @@ def multipliers(
     matrices, logarithms = fundamental(view, starts, duration, tolerance)
     values = _transverse(view, starts[0], matrices)
     if m == 2:
-        values = (complex(np.exp(logarithms.sum())),)
+        values = (complex(np.exp(np.clip(logarithms.sum(), -LARGEST, LARGEST))),)
     second = _transverse(view, starts[0], differenced(view, starts, duration, tolerance))
     apart = [abs(a - b) > AGREEMENT * (1.0 + abs(a)) for a, b in zip(values, second, strict=True)]
     return values, second, any(apart) or not np.all(np.isfinite(second))
+
+
+def inverted(values: tuple[complex, ...]) -> tuple[complex, ...]:
+    """The multipliers of the same cycle, followed in the other direction of time."""
+    least = np.exp(-LARGEST)
+    return tuple(1.0 / (value if abs(value) > least else complex(least)) for value in values[::-1])
 
 
 def stability(values: tuple[complex, ...], doubt: float) -> Stability:

@@ -41,12 +41,14 @@ CONTINUUM: Final = 0.12
 class Candidate:
     """A trajectory that nearly closes: from `start` (2,) in `period` s, negative if backwards.
 
-    section: on which it was found. touching: f touches zero there.
+    The sign is that of the direction in which others come closer. section: on which it was
+    found, -1 for none; backwards: by following time backwards. touching: f touches zero there.
     """
 
     start: Array
     period: float
     section: int
+    backwards: bool
     touching: bool
 
 
@@ -183,7 +185,10 @@ def _simple(
         part = a / (a - b) if a != b else 0.5
         s = rows.s[r, i] + part * (rows.s[r, i + 1] - rows.s[r, i])
         period = (1.0 - part) * rows.times[r, i] + part * rows.times[r, i + 1]
-        found.append(_candidate(view, sections, int(rows.which[r]), s, period, touching=False))
+        expands = a < b
+        start = points_of(view, Lanes(sections, rows.which[r : r + 1], np.array([s])))[0]
+        signed = float(-period if expands else period)
+        found.append(Candidate(start, signed, int(rows.which[r]), step < 0.0, touching=False))
     return found
 
 
@@ -220,7 +225,9 @@ def _touching(
                 s, height = _vertex(fine.s[r], heights)
                 if abs(height) <= fine.floor[r, i]:
                     period = float(np.interp(s, fine.s[r], fine.times[r]))
-                    found.append(_candidate(view, sections, section, s, period, touching=True))
+                    lane = Lanes(sections, np.array([section]), np.array([s]))
+                    start = points_of(view, lane)[0]
+                    found.append(Candidate(start, period, section, step < 0.0, touching=True))
         stretches, signs = following, kept
     return found, crossing
 
@@ -247,16 +254,3 @@ def _bends(rows: _Rows, sign: Array) -> Booleans:
         vertex = here - (after - before) ** 2 / (8.0 * bend)
         near = vertex <= 0.3 * np.maximum(before, after)
     return np.asarray(same & least & near)
-
-
-def _candidate(
-    view: Slice,
-    sections: tuple[Section, ...],
-    which: int,
-    s: float,
-    period: float,
-    *,
-    touching: bool,
-) -> Candidate:
-    lane = Lanes(sections, np.array([which]), np.array([s]))
-    return Candidate(points_of(view, lane)[0], float(period), which, touching)

@@ -37,7 +37,9 @@ STILL: Final = 1e-6
 class Closed:
     """A closed trajectory: starts (K, m) of segments of equal duration, and its period.
 
-    turns: (m,) how many widths further it ends than it began; 0 but on periodic axes.
+    Where the period is negative, it is followed backwards, starts in that order: what repels
+    strongly is known well only so. turns: (m,) how many widths further it ends than it began; 0
+    but on periodic axes.
     """
 
     starts: Array
@@ -46,15 +48,11 @@ class Closed:
 
 
 def segments(view: Slice, start: Array, period: float, count: int = SEGMENTS) -> Closed:
-    """The path from `start` for one period (negative: backwards), cut into equal segments.
-
-    It need not be closed; its order is that of time in either case.
-    """
+    """The path from `start` for one period, cut into equal segments; it need not be closed."""
     path = moved(view, start[None], np.linspace(0.0, period, count + 1), TOLERANCE)[0]
-    whole = path if period > 0.0 else path[::-1]
-    gap = np.nan_to_num((whole[-1] - whole[0]) / view.width)
+    gap = np.nan_to_num((path[-1] - path[0]) / view.width)
     turns = np.where(view.periodic, np.round(gap), 0.0)
-    return Closed(np.array(whole[:-1]), abs(period), turns)
+    return Closed(np.array(path[:-1]), period, turns)
 
 
 def closed(view: Slice, guess: Closed) -> Closed | None:
