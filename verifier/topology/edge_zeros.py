@@ -31,7 +31,7 @@ DEEP: Final = 0.01
 BESIDE: Final = 1e-3
 """How far to both sides, as a share of the edge, |f| must be larger than where it touches."""
 
-ROUNDS, PARTS = 12, 16
+ROUNDS, PARTS = 18, 6
 """An edge is divided so often into so many parts until the place of a crossing is left."""
 
 SECTIONS: Final = 42
@@ -96,13 +96,15 @@ def _crossing(f_at: Values, a: Array, b: Array, sign: Array) -> tuple[Array, Int
 
     A jump across zero is nothing.
     """
+    shares = np.arange(1.0, PARTS)[:, None] / PARTS
     for _ in range(ROUNDS if len(a) else 0):
-        points = a[:, None] + np.arange(PARTS + 1.0)[:, None] / PARTS * (b - a)[:, None]
-        same = _sign(f_at(points)) == sign[:, None]
-        same[:, 0], same[:, -1] = True, False
-        first = np.argmin(same, axis=1)
-        each = np.arange(len(a))
-        a, b = points[each, first - 1], points[each, first]
+        inner = a[:, None] + shares * (b - a)[:, None]
+        same = _sign(f_at(inner)) == sign[:, None]
+        # How many of them, one after the other, still have the sign.
+        count = np.cumprod(same, axis=1, dtype=np.int64).sum(axis=1)
+        step = (b - a) / PARTS
+        a = a + count[:, None] * step
+        b = a + step
     places = 0.5 * (a + b)
     return places, np.where(np.abs(f_at(places)) <= ON_LINE, CROSSING, NONE)
 
