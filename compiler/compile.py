@@ -11,9 +11,10 @@ horizon         table errors, carried to the fidelity horizon     7
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import final
+from typing import TypeAlias, final
 
 from compiler.check import Checked, check_behavior, check_examined
 from compiler.horizon import excess
@@ -30,8 +31,9 @@ from compiler.lower_parts import (
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
 from compiler.python_module import ModuleError
 from compiler.settings import Settings
+from compiler.sketch.claims import sketch_claims
 from compiler.sketch.design import Design
-from compiler.sketch.fill import filled
+from compiler.sketch.fill import CANDIDATES, filled
 from compiler.sketch.frame import SketchRefusedError
 from compiler.sketch.lower import SKETCH, plan_sketch
 from compiler.tabulate import TableError
@@ -42,6 +44,8 @@ from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Form, Formula, Step
 from spec_schema.field_modes import Modes
 from spec_schema.load import Loaded, examine
+
+Judge: TypeAlias = Callable[[Program], tuple[str, ...]]
 
 MENDED_BY_CODE = {"S241", "S242", "S245"}  # a formula that is kept as code needs no table
 TIGHTENINGS = 3  # how often the tables are made again, finer, for the fidelity horizon
@@ -56,8 +60,10 @@ class Compiled:
     warnings: tuple[Diagnostic, ...]
 
 
-def compile_file(path: Path, progress: Progress) -> Compiled:
+def compile_file(path: Path, progress: Progress, judge: Judge | None = None) -> Compiled:
     """Compile the behavior spec at `path`.
+
+    judge: says what a compiled sketch lacks of its claims, or has beside them, in sentences.
 
     Raises:
         SpecError: with everything that is wrong with it.
@@ -65,10 +71,10 @@ def compile_file(path: Path, progress: Progress) -> Compiled:
     examined = examine(path)
     if examined.mistakes or examined.loaded is None:
         raise SpecError(check_examined(examined))
-    return compile_loaded(examined.loaded, progress)
+    return compile_loaded(examined.loaded, progress, judge)
 
 
-def compile_loaded(loaded: Loaded, progress: Progress) -> Compiled:
+def compile_loaded(loaded: Loaded, progress: Progress, judge: Judge | None = None) -> Compiled:
     """Compile a behavior spec that has been read."""
     if not isinstance(loaded.spec, BehaviorSpec):
         message = f"a {loaded.spec.kind} is not compiled; a behavior is"
@@ -76,8 +82,10 @@ def compile_loaded(loaded: Loaded, progress: Progress) -> Compiled:
     checked = check_behavior(loaded, loaded.spec)
     _stop_at_errors(checked)
     program = _assembled(checked, _untabulated(checked))
-    if checked.spec.table.keep == "tables":
-        program = _tabulated(checked, program, progress)
+    if checked.design is not None:
+        program = _sketched(checked, checked.design, program, progress, judge)
+    elif checked.spec.table.keep == "tables":
+        program = _tabulated(checked, program, _plan(checked), progress)
     _stop_at_errors(checked)
     warnings = tuple(d for d in checked.findings.diagnostics if d.severity is Severity.WARNING)
     return Compiled(program, warnings)
@@ -102,9 +110,29 @@ def _untabulated(checked: Checked) -> Field:
     return field
 
 
-def _tabulated(checked: Checked, program: Program, progress: Progress) -> Program:
+def _sketched(
+    checked: Checked, design: Design, program: Program, progress: Progress, judge: Judge | None
+) -> Program:
+    """The program of a sketch, filled in ways that are tried until the judge finds no fault."""
+    claims = (*program.claims, *sketch_claims(design, checked.loaded))
+    faults: tuple[str, ...] = ()
+    for candidate in range(len(CANDIDATES)):
+        plan = _plan_sketch(checked, design, candidate)
+        made = replace(_tabulated(checked, program, plan, progress), claims=claims)
+        _stop_at_errors(checked)
+        found = judge(made) if judge is not None else ()
+        if not found:
+            return made
+        faults = faults or found
+    message = f"the filled field does not look as it was drawn: {faults[0]}"
+    remedy = "draw features further apart or with like rates, or add arrows between them"
+    checked.findings.error("S268", SKETCH, message, remedy, key=True)
+    return program
+
+
+def _tabulated(checked: Checked, program: Program, plan: Plan, progress: Progress) -> Program:
     """The program with tables that are good enough for its own fidelity tolerance."""
-    plan, settings = _plan(checked), checked.settings
+    settings = checked.settings
     for _ in range(TIGHTENINGS):
         field = _with_tables(checked, program, plan, settings, progress)
         made = measured(replace(program, field=field))
@@ -149,8 +177,6 @@ def _with_tables(
 def _plan(checked: Checked) -> Plan:
     if isinstance(checked.spec.field.form, Formula | Step | Modes):
         return _plan_formula(checked)
-    if checked.design is not None:
-        return _plan_sketch(checked, checked.design)
     beside = Path(checked.loaded.source.name).resolve().parent
     plan = plan_sampled(checked.spec, checked.declared, beside, checked.findings)
     _stop_at_errors(checked)
@@ -158,9 +184,10 @@ def _plan(checked: Checked) -> Plan:
     return plan
 
 
-def _plan_sketch(checked: Checked, design: Design) -> Plan:
+def _plan_sketch(checked: Checked, design: Design, candidate: int) -> Plan:
+    origin = checked.loaded.origin(SKETCH)
     try:
-        return plan_sketch(filled(design, 0), checked.declared, checked.loaded.origin(SKETCH))
+        return plan_sketch(filled(design, candidate), checked.declared, origin)
     except SketchRefusedError as error:
         checked.findings.error(error.code, error.path, error.message, error.remedy)
     raise SpecError(checked.findings.diagnostics)

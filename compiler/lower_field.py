@@ -38,7 +38,7 @@ RELATIVE = {  # of the largest rate, where the spec declares no tolerance
     ("module", Method.CUBIC): 1e-5,
     ("grid", Method.CUBIC): 1e-5,
     ("arrows", Method.CUBIC): 1e-3,  # a sketch is not known better than that
-    ("sketch", Method.CUBIC): 3e-3,  # and here the verifier looks at what came out
+    ("sketch", Method.CUBIC): 1e-3,  # and here the verifier looks at what came out
 }
 RELATIVE_LINEAR = 1e-3
 SURVEY = 4_096  # points that tell how large a column is

@@ -9,6 +9,7 @@ from runtime.artifact import read as read_artifact
 from runtime.program import Program
 from specc.faults import fault
 from specc.files import write_atomically
+from specc.sketch_judge import faults_of
 
 
 def _in_silence(_what: str, _done: int, _of: int) -> None:
@@ -21,7 +22,7 @@ def compile_spec(path: Path | str, progress: Progress = _in_silence) -> Compiled
     Raises:
         SpecError: with everything that is wrong with it.
     """
-    return compile_file(Path(path), progress)
+    return compile_file(Path(path), progress, faults_of)
 
 
 def write_artifact(program: Program, path: Path | str) -> bytes:

@@ -7,6 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from compiler.declare import Declarations
+from compiler.sketch.algebra import with_constants
 from compiler.sketch.design import Design, Family, Node, Region, Ridge, Ring
 from compiler.sketch.drawing import Drawing, Line, Orbit, Point
 from compiler.sketch.frame import Frame, SketchRefusedError, frame_of
@@ -47,6 +48,7 @@ def compose(drawing: Drawing, declared: Declarations) -> Design:
         SketchRefusedError: no field of the plane can look like this, or none that we can build.
     """
     frame = frame_of(drawing, declared)
+    _refuse_outside(drawing, frame, declared)
     loops = _loops(drawing, frame)
     nodes = [Node(point, frame.spot(point.at)) for point in drawing.points]
     ridges = [_ridge(line, frame) for line in drawing.lines]
@@ -160,6 +162,30 @@ class _Builder:
         return sorts | {_sort(loop.orbit) for loop in children}
 
 
+def _refuse_outside(drawing: Drawing, frame: Frame, declared: Declarations) -> None:
+    """Features outside of the domain, and times or rates that are not positive."""
+    for path, pair in drawing.spots:
+        for name, expr in zip(drawing.over, pair, strict=True):
+            state = declared.variable(name)
+            values = _values(expr, frame)
+            if not (state.low <= min(values) and max(values) <= state.high):
+                message = f"this place is outside the domain of '{name}' for some controls"
+                remedy = "move it inside, or widen the domain"
+                raise SketchRefusedError("S264", path, message, remedy)
+    for orbit in drawing.orbits:
+        named = [("times", i) for i in range(len(orbit.times))] + [("period",), ("speed",)]
+        paces: list[Expr | None] = [*orbit.times, orbit.period, orbit.speed]
+        for steps, pace in zip(named, paces, strict=True):
+            if pace is not None and not min(_values(pace, frame)) > 0.0:
+                message = "this is not positive for some controls"
+                remedy = "write a time that is always above 0"
+                raise SketchRefusedError("S261", (*orbit.path, *steps), message, remedy)
+
+
+def _values(expr: Expr, frame: Frame) -> list[float]:
+    return [evaluate(with_constants(expr, frame.constants), sample) for sample in frame.samples]
+
+
 def _loops(drawing: Drawing, frame: Frame) -> list[_Loop]:
     """The orbits in the frame, with what is right around each."""
     curves = [_still(orbit, frame) for orbit in drawing.orbits]
@@ -210,8 +236,21 @@ def _ridge(line: Line, frame: Frame) -> Ridge:
         message = f"the shape of '{line.name}' changes with the controls"
         remedy = "place its points at fixed shares between the outermost places of the sketch"
         raise SketchRefusedError("S265", line.path, message, remedy)
+    if not np.all(np.diff(through @ (through[-1] - through[0])) > 0.0):
+        message = f"'{line.name}' turns back on its way from its first point to its last"
+        remedy = "let its points advance from one end to the other"
+        raise SketchRefusedError("S265", line.path, message, remedy)
     saddle = (through[0] + through[-1]) / 2 if line.saddle is None else frame.spot(line.saddle).at
-    return Ridge(line, through, saddle)
+    return Ridge(line, through, _on_curve(through, saddle))
+
+
+def _on_curve(through: Array, saddle: Array) -> Array:
+    """The place of the polyline that is right beside the saddle."""
+    chord = (through[-1] - through[0]) / np.linalg.norm(through[-1] - through[0])
+    s = (through - through[0]) @ chord
+    at = float((saddle - through[0]) @ chord)
+    found = [np.interp(at, s, through[:, axis]) for axis in (0, 1)]
+    return np.array(found)
 
 
 def _refuse_coincidences(

@@ -132,7 +132,7 @@ class _Builder:
 
     def family(self, family: Family) -> Model:
         """The model of nested orbits, with what they hold."""
-        curves = self._curves(family)
+        curves = curves_of(family, self.design.frame)
         rings = RingModel(
             centre=family.centre,
             curves=curves,
@@ -147,22 +147,21 @@ class _Builder:
         members = self.members(family.inside)
         return HollowModel(rings, Blend((CollarModel(rings), *members), self.power))
 
-    def _curves(self, family: Family) -> tuple[Curve, ...]:
-        """The curves of a family; an added one runs between its neighbors."""
-        found: list[Curve] = []
-        for ring in family.rings:
-            orbit = ring.orbit
-            vertices = family.centre + ring.share * (ring.vertices - family.centre)
-            if ring.share < 1.0 and found:
-                inner = found[-1].radii(_angles(ring.vertices - family.centre))[0]
-                rays = ring.vertices - family.centre
-                outer = np.linalg.norm(rays, axis=-1)
-                mean = inner + ring.share * (outer - inner)
-                vertices = family.centre + rays * (mean / outer)[:, np.newaxis]
-            rounding = orbit.rounding if orbit.is_polygon else None
-            seconds = _example(orbit, self.design.frame)
-            found.append(curve_through(vertices, family.centre, rounding, seconds))
-        return tuple(found)
+
+def curves_of(family: Family, frame: Frame) -> tuple[Curve, ...]:
+    """The curves of a family; an added one runs between its neighbors."""
+    found: list[Curve] = []
+    for ring in family.rings:
+        orbit = ring.orbit
+        rays = ring.vertices - family.centre
+        vertices = family.centre + ring.share * rays
+        if ring.share < 1.0 and found:
+            inner, outer = found[-1].radii(_angles(rays))[0], np.linalg.norm(rays, axis=-1)
+            mean = inner + ring.share * (outer - inner)
+            vertices = family.centre + rays * (mean / outer)[:, np.newaxis]
+        rounding = orbit.rounding if orbit.is_polygon else None
+        found.append(curve_through(vertices, family.centre, rounding, _example(orbit, frame)))
+    return tuple(found)
 
 
 def _angles(rays: Array) -> Array:

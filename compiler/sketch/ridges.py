@@ -1,10 +1,12 @@
 """The field of a separatrix: a saddle whose way in is a curve.
 
-N: places; V: points of the curve. The curve goes on straight beyond its ends.
+The curve is a graph over its chord: a place is (s, d), how far it is along the chord, and how far
+beside the curve. There s comes to the saddle and d grows, so the curve is never crossed.
+N: places; V: points of the curve.
 """
 
 from dataclasses import dataclass
-from typing import Final, final
+from typing import final
 
 import numpy as np
 import scipy  # its parts are loaded when they are first used; most specs need none
@@ -13,19 +15,20 @@ from compiler.sketch.models import Settings, quarter_turn, saturated
 from runtime.arrays import Array
 from spec_schema.expressions.tree import Expr
 
-BEYOND: Final = 8.0
-"""Half widths of the frame that the line goes on straight beyond its ends."""
-PIECES: Final = 400
-STEPS: Final = 6
-"""Newton steps to the nearest place on the line."""
-
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class RidgeModel:
-    """curve: spline of the place over the length s; saddle: its s. rates: in along it, and away."""
+    """graph: spline of the height over the chord, from `start` along the unit vector `chord`.
 
-    curve: "scipy.interpolate.CubicSpline"
+    ends: (2,) the first and the last s of the spline, which goes on straight beyond them; saddle:
+    its s. rates: in along the curve, and away from it.
+    """
+
+    graph: "scipy.interpolate.CubicSpline"
+    start: Array
+    chord: Array
+    ends: Array
     saddle: float
     rates: tuple[Expr, Expr]
 
@@ -35,47 +38,37 @@ class RidgeModel:
         return self.rates
 
     def distance(self, q: Array, settings: Settings) -> Array:
-        """How far from the line."""
+        """How far beside the curve."""
         del settings
-        _, _, aside = self._beside(q)
-        return np.abs(aside)
+        _, beside, _ = self._along(q)
+        return np.abs(beside)
 
     def parts(self, q: Array, settings: Settings) -> Array:
-        """Along the line to the saddle, and away from the line."""
+        """Along the curve to the saddle, and away from the curve."""
         del settings
-        s, along, aside = self._beside(q)
-        inward = -saturated(s - self.saddle)[:, np.newaxis] * along
-        away = saturated(aside)[:, np.newaxis] * quarter_turn(along)
+        s, beside, slope = self._along(q)
+        across = quarter_turn(self.chord)
+        tangent = self.chord + slope[:, np.newaxis] * across
+        inward = -saturated(s - self.saddle)[:, np.newaxis] * tangent
+        away = saturated(beside)[:, np.newaxis] * across
         return np.stack([inward, away], axis=1)
 
-    def _beside(self, q: Array) -> tuple[Array, Array, Array]:
-        """The nearest place on the line: its s (N,), direction (N, 2), signed distance (N,)."""
-        first, last = float(self.curve.x[0]), float(self.curve.x[-1])
-        grid = np.linspace(first, last, PIECES)
-        apart = np.linalg.norm(q[:, np.newaxis] - self.curve(grid), axis=-1)
-        s = grid[apart.argmin(axis=1)]
-        for _ in range(STEPS):
-            gap, slope = q - self.curve(s), self.curve(s, 1)
-            bend = self.curve(s, 2)
-            change = np.sum(slope * slope, axis=-1) - np.sum(gap * bend, axis=-1)
-            move = np.sum(gap * slope, axis=-1) / np.where(change > 0.1, change, 1.0)
-            s = np.clip(s + np.clip(move, -0.1, 0.1), first, last)
-        along = self.curve(s, 1)
-        along = along / np.linalg.norm(along, axis=-1, keepdims=True)
-        return s, along, np.sum((q - self.curve(s)) * quarter_turn(along), axis=-1)
+    def _along(self, q: Array) -> tuple[Array, Array, Array]:
+        """How far (N,) along the chord and beside the curve, and the curve's slope there."""
+        y = q - self.start
+        s = y @ self.chord
+        inside = np.clip(s, self.ends[0], self.ends[1])
+        slope = self.graph(inside, 1)
+        height = self.graph(inside) + (s - inside) * slope
+        return s, y @ quarter_turn(self.chord) - height, slope
 
 
 def ridge_through(points: Array, saddle: Array, rates: tuple[Expr, Expr]) -> RidgeModel:
-    """The separatrix through points (V, 2) with its saddle at the nearest place of the line."""
-    first, last = points[0] - points[1], points[-1] - points[-2]
-    steps = np.array([[BEYOND / 2], [BEYOND]])
-    before = points[0] + steps[::-1] * first / np.linalg.norm(first)
-    after = points[-1] + steps * last / np.linalg.norm(last)
-    all_points = np.concatenate([before, points, after])
-    lengths = np.concatenate(
-        [[0.0], np.cumsum(np.linalg.norm(np.diff(all_points, axis=0), axis=1))]
-    )
-    curve = scipy.interpolate.CubicSpline(lengths, all_points)
-    grid = np.linspace(lengths[0], lengths[-1], 50 * PIECES)
-    nearest = grid[int(np.linalg.norm(curve(grid) - saddle, axis=-1).argmin())]
-    return RidgeModel(curve, float(nearest), rates)
+    """The separatrix through points (V, 2), with its saddle beside the given place (2,)."""
+    span = points[-1] - points[0]
+    chord = span / np.linalg.norm(span)
+    y = points - points[0]
+    s, height = y @ chord, y @ quarter_turn(chord)
+    graph = scipy.interpolate.CubicSpline(s, height, bc_type="natural")
+    place = float((saddle - points[0]) @ chord)
+    return RidgeModel(graph, points[0], chord, s[[0, -1]], place, rates)
