@@ -129,9 +129,8 @@ def _dips(nodes: Array, f: Array, along: int) -> Booleans:
     with np.errstate(invalid="ignore"):
         one_sign = sign[:-1] * sign[1:] > 0.0
         falls, rises = np.maximum(down, -slope) > 0.0, np.maximum(up, slope) > 0.0
-        bottom = left * np.maximum(up, 0.0) + right * np.maximum(down, 0.0)
-        meets = bottom - np.maximum(up, 0.0) * np.maximum(down, 0.0) * step
-        deep = meets * step <= TOUCH
+        down, up = np.maximum(down, 0.0), np.maximum(up, 0.0)
+        deep = left * up + right * down - up * down * step <= TOUCH * (up + down)
         return np.moveaxis(np.asarray(one_sign & falls & rises & deep), 0, along)
 
 
