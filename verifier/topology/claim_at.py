@@ -142,7 +142,7 @@ def _unseen(claim: Claim, completeness: Completeness) -> float:
 
 def _sentence(claim: Claim, seen: Portrait, found: tuple[Member, ...], outcome: Outcome) -> str:
     sure = [member for member in found if member.fit is Fit.YES]
-    near = [member for member in found if member.of_type is not Fit.NO and member.why]
+    near = _near_misses(found)
     perhaps = [member for member in found if member.fit is Fit.MAYBE]
     shown = [_described(seen, member, claim.feature) for member in sure[:3]]
     alone = len(sure) == 1 and shown[0].startswith(("at ", "with "))
@@ -161,6 +161,12 @@ def _sentence(claim: Claim, seen: Portrait, found: tuple[Member, ...], outcome: 
     return text if sure else f"{text}; {listed_features(seen)}"
 
 
+def _near_misses(found: tuple[Member, ...]) -> list[Member]:
+    """The features of the right type that do not count, the nearest miss first."""
+    near = [member for member in found if member.of_type is not Fit.NO and member.why]
+    return sorted(near, key=lambda member: member.off)
+
+
 def _described(seen: Portrait, member: Member, known_as: str = "") -> str:
     """A feature in words, without the type that is `known_as` already."""
     if member.is_cycle:
@@ -175,11 +181,9 @@ def _place(claim: Claim, seen: Portrait, found: tuple[Member, ...], outcome: Out
     if outcome is Outcome.HOLDS:
         return ()
     sure = [member for member in found if member.fit is Fit.YES]
-    near = [
-        member for member in found if member.of_type is not Fit.NO and member.fit is not Fit.YES
-    ]
     too_many = claim.most is not None and len(sure) > claim.most
-    shown = sure[-1:] if too_many else (near[:1] or [m for m in found if not m.is_cycle][:1])
+    any_point = [member for member in found if not member.is_cycle]
+    shown = (sure[-1:] if too_many else ()) or (_near_misses(found) or sure or any_point)[:1]
     if not shown:
         return ()
     [member] = shown

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Final, final
+from typing import Final, TypeAlias, final
 
 import numpy as np
 
@@ -52,6 +52,12 @@ CYCLES: Final[dict[str, frozenset[Stability]]] = {
 """The stabilities of cycles that each feature takes in."""
 
 
+Wrong: TypeAlias = tuple[str, float]
+"""What is wrong, in words, and by how many times what is allowed."""
+
+FINE: Final[Wrong] = ("", 0.0)
+
+
 @final
 class Fit(IntEnum):
     """Whether a feature is one of those that a claim counts."""
@@ -67,7 +73,8 @@ class Member:
     """A feature of a portrait beside a claim.
 
     index: into the portrait's fixed points or cycles. of_type: whether its type fits; fit: whether
-    everything fits. why: in words what does not, where only a condition fails.
+    everything fits. why: in words what does not, where only a condition fails; off: by how many
+    times what is allowed.
     """
 
     is_cycle: bool
@@ -75,6 +82,7 @@ class Member:
     of_type: Fit
     fit: Fit
     why: str
+    off: float
 
     @property
     def key(self) -> tuple[bool, int]:
@@ -105,7 +113,7 @@ def named(program: Program, claim: Claim, portrait: Portrait, settings: Settings
         (True, i)
         for i, cycle in enumerate(portrait.cycles)
         if _type_of_cycle(claim.feature, cycle) is not Fit.NO
-        and not conditions.wrong_reach(cycle)
+        and not conditions.wrong_reach(cycle)[0]
         and not claim.places
     }
     return {*points, *cycles}
@@ -124,23 +132,28 @@ def values_at(program: Program, codes: tuple[Code, ...], settings: Settings) -> 
 
 def _point(claim: Claim, conditions: "_Conditions", index: int, point: FixedPoint) -> Member:
     of_type = _type_of_point(claim.feature, point)
-    why = conditions.wrong_place(point) if of_type is not Fit.NO else ""
+    why, off = conditions.wrong_place(point) if of_type is not Fit.NO else FINE
     return Member(
         is_cycle=False,
         index=index,
         of_type=of_type,
         fit=Fit.NO if why else of_type,
         why=why,
+        off=off,
     )
 
 
 def _cycle(claim: Claim, conditions: "_Conditions", index: int, cycle: Cycle) -> Member:
     of_type = _type_of_cycle(claim.feature, cycle)
-    why = ""
+    why, off = FINE
     if of_type is not Fit.NO:
-        why = conditions.wrong_reach(cycle) or conditions.wrong_period(cycle)
+        why, off = max(conditions.wrong_reach(cycle), conditions.wrong_period(cycle), key=_off)
     fit = Fit.NO if why or claim.places else of_type
-    return Member(is_cycle=True, index=index, of_type=of_type, fit=fit, why=why)
+    return Member(is_cycle=True, index=index, of_type=of_type, fit=fit, why=why, off=off)
+
+
+def _off(wrong: Wrong) -> float:
+    return wrong[1]
 
 
 def _type_of_point(feature: str, point: FixedPoint) -> Fit:
@@ -176,17 +189,17 @@ class _Conditions:
         self._reaches = values[count : count + len(reaches)].reshape(-1, 2)
         self._period = float(values[-1]) if period else 0.0
 
-    def wrong_place(self, point: FixedPoint) -> str:
-        """What is wrong with where a point is, in words; empty if nothing is."""
+    def wrong_place(self, point: FixedPoint) -> Wrong:
+        """What is wrong with where a point is."""
         for place, wanted in zip(self._claim.places, self._places, strict=True):
             j, axis = self._axes[place.state]
             off = abs(_short(axis, float(point.at[j]) - float(wanted)))
             if not off <= place.within:
-                return f"not at {axis.name} = {shown(axis, float(wanted))}"
-        return ""
+                return f"not at {axis.name} = {shown(axis, float(wanted))}", off / place.within
+        return FINE
 
-    def wrong_reach(self, cycle: Cycle) -> str:
-        """What is wrong with how far a cycle swings, in words; empty if nothing is."""
+    def wrong_reach(self, cycle: Cycle) -> Wrong:
+        """What is wrong with how far a cycle swings."""
         for reach, (low, high) in zip(self._claim.reaches, self._reaches, strict=True):
             j, axis = self._axes[reach.state]
             seen = cycle.points[:, j]
@@ -194,18 +207,20 @@ class _Conditions:
             if not off <= reach.within:
                 wanted = f"{shown(axis, float(low))} to {shown(axis, float(high))}"
                 got = f"{shown(axis, float(seen.min()))} to {shown(axis, float(seen.max()))}"
-                return f"{axis.name} swings from {got}, not from {wanted}"
-        return ""
+                return f"{axis.name} swings from {got}, not from {wanted}", off / reach.within
+        return FINE
 
-    def wrong_period(self, cycle: Cycle) -> str:
-        """What is wrong with how long a cycle takes, in words; empty if nothing is."""
+    def wrong_period(self, cycle: Cycle) -> Wrong:
+        """What is wrong with how long a cycle takes."""
         if self._claim.period is None:
-            return ""
+            return FINE
         off = abs(cycle.period - self._period)
-        if off <= self._claim.period_within * abs(self._period):
-            return ""
+        room = self._claim.period_within * abs(self._period)
+        if off <= room:
+            return FINE
         share = f", {100.0 * off / abs(self._period):.3g} % off" if self._period else ""
-        return f"its period is {cycle.period:.6g} s, not {self._period:.6g} s{share}"
+        why = f"its period is {cycle.period:.6g} s, not {self._period:.6g} s{share}"
+        return why, off / room if room > 0.0 else np.inf
 
 
 def shown(axis: AxisRange, value: float) -> str:
