@@ -62,7 +62,7 @@ def find_trajectories(
     ahead = Follower(view, times, ends)
     behind = Follower(view, -times, ends)
     shown = [follow(ahead, start, Course.SEED) for start in _beside_sources(view, fixed_points)]
-    covered = [path.points for path in (*separatrices, *shown)]
+    covered = [*(s.points for s in separatrices), *(path.points for path in shown)]
     seeds = spread(view, CANDIDATES)
     chosen = _spread_out(
         view, covered, (coarse_paths(ahead, seeds), coarse_paths(behind, seeds)), count
