@@ -19,6 +19,9 @@ SEGMENTS: Final = 16
 
 ITERATIONS: Final = 12
 
+PATIENCE: Final = 4
+"""Steps after which each must at least halve the gaps, or there is nothing to be found."""
+
 TOLERANCE: Final = 1e-12
 """Of the integration, as a share of the widths."""
 
@@ -58,9 +61,10 @@ def segments(view: Slice, start: Array, period: float, count: int = SEGMENTS) ->
 def closed(view: Slice, guess: Closed) -> Closed | None:
     """The closed trajectory near `guess`; None where Newton's method finds none."""
     now, gaps = guess, _gaps(view, guess)
-    for _ in range(ITERATIONS):
+    before = np.inf
+    for iteration in range(ITERATIONS):
         size = float(np.abs(gaps).max())
-        if not np.isfinite(size):
+        if not np.isfinite(size) or (iteration > PATIENCE and size > 0.5 * before):
             return None
         if size < CLOSED:
             return _minimal(view, now)
@@ -70,7 +74,7 @@ def closed(view: Slice, guess: Closed) -> Closed | None:
         moved_on = _stepped(view, now, step)
         if moved_on is None:
             return None
-        now, gaps = moved_on, _gaps(view, moved_on)
+        before, now, gaps = size, moved_on, _gaps(view, moved_on)
     return None
 
 
