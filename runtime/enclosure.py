@@ -15,14 +15,14 @@ from runtime.code import Code
 from runtime.flow import Source, rate_of
 from runtime.intervals import Interval, add, exactly, multiply, subtract
 from runtime.jet_machine import run_over_boxes
-from runtime.jets import Jet, constant, jet_sum, unbounded
+from runtime.jets import SURE, Jet, constant, jet_sum, unbounded
 from runtime.program import Kind, Program, State
 from runtime.table_bounds import Columns, column_jets, columns_of, combined, held_at
 from runtime.tape import Sum
 
 Register: TypeAlias = dict[str, Jet]
 
-CODE_WORK: Final = 40
+CODE_WORK: Final = 4
 """What an operation of code costs beside one of a table, roughly."""
 
 
@@ -137,7 +137,7 @@ def _jets(field: Enclosure, low: Array, high: Array, *, moves: bool, coarse: boo
     register = dict(field.register)
     for j, name in enumerate(field.axes):
         unit = exactly(np.eye(m)[:, j : j + 1]) if moves else None
-        register[name] = Jet(Interval(low[:, j], high[:, j]), unit, np.asarray(True))  # noqa: FBT003 - an array
+        register[name] = Jet(Interval(low[:, j], high[:, j]), unit, SURE)
     names = [name for name, _ in field.coordinates]
     extra = run_over_boxes([code for _, code in field.coordinates], register)
     register |= dict(zip(names, extra, strict=True))

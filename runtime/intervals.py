@@ -97,7 +97,7 @@ def multiply(a: Interval, b: Interval) -> Interval:
 
 
 def inverse(a: Interval) -> Interval:
-    """1 / a; all numbers where a contains 0, none where it is 0."""
+    """1 / a; all numbers where a contains 0 inside or is 0 (the machine's 1/0 is infinite)."""
     low, high = 1.0 / a.high, 1.0 / a.low
     result = outward(low, high)
     open_ = holds_zero(a)
@@ -110,7 +110,7 @@ def inverse(a: Interval) -> Interval:
     high = np.where(at_low, np.inf, high)
     low = np.where(at_high, -np.inf, low)
     none = is_zero(a)
-    return Interval(np.where(none, np.nan, low), np.where(none, np.nan, high))
+    return Interval(np.where(none, -np.inf, low), np.where(none, np.inf, high))
 
 
 def square(a: Interval) -> Interval:
@@ -197,4 +197,5 @@ def _meets(a: Interval, at: float) -> Booleans:
 
 
 def _loosened(low: Array, high: Array) -> Interval:
-    return outward(low - LOOSE * np.abs(low), high + LOOSE * np.abs(high))
+    slack = [np.where(np.isfinite(end), LOOSE * np.abs(end), 0.0) for end in (low, high)]
+    return outward(low - slack[0], high + slack[1])

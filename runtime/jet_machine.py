@@ -35,6 +35,7 @@ from runtime.jets import (
     NOTHING,
     ONE,
     SURE,
+    UNBOUNDED,
     Jet,
     composed,
     constant,
@@ -233,7 +234,10 @@ def _power(a: Jet, b: Jet) -> Jet:
     n = b.value.low
     if b.slopes is None and n.ndim == 0 and n == b.value.high:
         return _constant_power(a, float(n))
-    return _exponential(jet_product(b, _logarithm(a)))
+    jet = _exponential(jet_product(b, _logarithm(a)))
+    # Powers of what may be negative exist here and there; nothing is said of them.
+    loose = np.asarray(a.value.low <= 0.0)
+    return Jet(chosen(loose, UNBOUNDED, jet.value), jet.slopes, np.asarray(jet.sure & ~loose))
 
 
 def _constant_power(a: Jet, n: float) -> Jet:

@@ -156,17 +156,34 @@ def _bounds(
         read_only_integers(columns.coefficients.shape[:-1]),
         np.array([axis.periodic for axis in columns.axes]),
         read_only_view(columns.coefficients).reshape(-1),
+        float(np.abs(columns.coefficients).max()),
         low,
         high,
         lower,
         upper,
     )
-    # A little beyond the edge weights sum to more than 1 in size; 2 ** d covers a whole cell.
-    error = columns.error[:, None] * 2.0 ** (3 * d) if np.any(columns.error) else 0.0
-    if np.ndim(error):
-        wide = outward(lower - 2.0 * error, upper + 2.0 * error)
-        lower, upper = wide.low, wide.high
+    if np.any(columns.error):
+        error = _spilled(columns, low, high)
+        lower, upper = (
+            np.nextafter(end + side * error, side * np.inf)
+            for end, side in ((lower, -1.0), (upper, 1.0))
+        )
     return Interval(lower[..., 0], upper[..., 0]), Interval(lower[..., 1:], upper[..., 1:])
+
+
+def _spilled(columns: Columns, low: Array, high: Array) -> Array:
+    """What the error of the coefficients does to values and slopes, (N, k, 1) twice that.
+
+    Weights sum to 1 in size, for a derivative to 2; by b cells beyond the edge, each of up to
+    three steps of de Boor's recursion makes that 1 + 2 b times as much.
+    """
+    taps = 4 if columns.method is Method.CUBIC else 2
+    cells = np.array(columns.coefficients.shape[:-1]) - taps + 1
+    bounded = ~np.array([axis.periodic for axis in columns.axes])
+    beyond = np.maximum(np.maximum(-low, high - cells), 0.0) * bounded
+    grown = (1.0 + 2.0 * beyond.max(axis=-1)) ** (3 * len(cells))
+    spilled: Array = 2.0 * (1.0 + 2.0**-40) * grown[:, None, None] * columns.error[:, None]
+    return spilled
 
 
 def _chained(

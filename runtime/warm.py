@@ -9,7 +9,7 @@ from runtime.flow import flow_of
 from runtime.integrators import adaptive, fixed_steps
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
 from runtime.intervals import Interval, exactly
-from runtime.jets import Jet
+from runtime.jets import SURE, Jet
 from runtime.kernels.cache import is_warm, mark_warm
 from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
@@ -59,7 +59,7 @@ def _adapt() -> object:
 
 
 def _bounds() -> object:
-    box = Jet(Interval(np.zeros(1), np.ones(1)), exactly(np.ones((1, 1))), np.asarray(True))  # noqa: FBT003 - an array
+    box = Jet(Interval(np.zeros(1), np.ones(1)), exactly(np.ones((1, 1))), SURE)
     return column_jets(columns_of(TABLE), [box], 1, coarse=False)
 
 

@@ -37,9 +37,12 @@ SMALLEST: Final = 2.0**-21
 """Boxes of this share of the domain are not halved any more."""
 
 MOST: Final = 4000
-"""So many boxes, and more than a round before, are a continuum of zeros."""
+"""So many boxes, and more than in the round before, and that three times, are a continuum."""
 
-WORK: Final = 250_000_000
+PATIENCE: Final = 3
+"""How often in a row the boxes may become more."""
+
+WORK: Final = 60_000_000
 """How much may be spent on one proof; about two seconds."""
 
 SIZES: Final = (2.0, 0.5, 0.1, 0.01, 1e-3)
@@ -135,11 +138,12 @@ def _searched(view: Slice, field: Enclosure) -> _Search:
         field, view.width, low, high, _Regions(nothing, nothing, nothing, nothing), (), 0
     )
     search = _without_far_ones(search)
-    before = len(search.low)
+    before, grown = len(search.low), 0
     while len(search.low):
         search = _round(search)
         count = len(search.low)
-        if (count > MOST and count > before) or search.work > WORK:
+        grown = grown + 1 if count > max(MOST, before) else 0
+        if grown >= PATIENCE or search.work > WORK:
             return _stopped(search)
         before = count
     return search
@@ -363,9 +367,10 @@ def _reported(view: Slice, search: _Search, about: str) -> Proof:
     """What the search shows of the domain."""
     regions = search.regions
     rows, doubtful = _once(view, regions, _in_domain(view, regions))
-    rows.sort(key=lambda i: tuple(regions.centre[i]))
     regions = _rows(regions, rows)
     zeros, radii = _named(view, regions)
+    order = [int(i) for i in np.lexsort(zeros.T[::-1])]
+    zeros, radii, regions = zeros[order], radii[order], _rows(regions, order)
     J = slopes(search.field, regions.low, regions.high)
     if view.is_map:
         ahead = add(J, exactly(np.eye(len(view.axes))))

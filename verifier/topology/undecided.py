@@ -8,11 +8,14 @@ from runtime.arrays import Array, frozen
 from verifier.topology.features import UndecidedBox
 from verifier.topology.slices import Slice
 
-COARSE: Final = 64
-"""Boxes are gathered in so many parts of each axis."""
+COARSE: Final = {1: 64, 2: 64, 3: 16, 4: 8}
+"""Boxes are gathered in so many parts of each axis, by the number of axes."""
 
 POINT: Final = 1.0 / 32.0
 """Neighbouring boxes that together are no longer than this share of the domain are one."""
+
+MANY: Final = 300
+"""More parts than this are no single points, and stay as they are."""
 
 
 def merged_boxes(view: Slice, low: Array, high: Array) -> tuple[UndecidedBox, ...]:
@@ -21,14 +24,17 @@ def merged_boxes(view: Slice, low: Array, high: Array) -> tuple[UndecidedBox, ..
         return ()
     top = view.low + view.width
     low, high = np.clip(low, view.low, top), np.clip(high, view.low, top)
-    cell = np.floor((0.5 * (low + high) - view.low) / view.width * COARSE)
+    parts = COARSE[len(view.axes)]
+    cell = np.floor((0.5 * (low + high) - view.low) / view.width * parts)
     _, group = np.unique(cell, axis=0, return_inverse=True)
     groups = group.reshape(-1)
-    hulls = [
-        (low[groups == g].min(axis=0), high[groups == g].max(axis=0))
-        for g in range(int(groups.max()) + 1)
-    ]
-    return tuple(UndecidedBox(frozen(a), frozen(b)) for a, b in _joined(hulls, view.width))
+    shape = (int(groups.max()) + 1, low.shape[1])
+    first, last = np.full(shape, np.inf), np.full(shape, -np.inf)
+    np.minimum.at(first, groups, low)
+    np.maximum.at(last, groups, high)
+    hulls = list(zip(first, last, strict=True))
+    joined = _joined(hulls, view.width) if len(hulls) <= MANY else hulls
+    return tuple(UndecidedBox(frozen(a), frozen(b)) for a, b in joined)
 
 
 def _joined(boxes: list[tuple[Array, Array]], width: Array) -> list[tuple[Array, Array]]:
