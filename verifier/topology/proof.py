@@ -9,7 +9,6 @@ Neumaier 2004 on the regions). m: axes; B: boxes; k: zeros.
 """
 
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import Final, final
 
 import numpy as np
@@ -19,19 +18,20 @@ from runtime.enclosure import Enclosure, changes, enclosure_of, slopes
 from runtime.flow import Source
 from runtime.intervals import Interval, add, exactly
 from verifier.topology.certificates import unstable_directions
-from verifier.topology.contraction import (
-    inverses_of,
-    is_inside,
-    krawczyk,
-    mean_value,
-    narrowed,
-)
+from verifier.topology.contraction import inverses_of, krawczyk, mean_value, narrowed
 from verifier.topology.features import UndecidedBox
+from verifier.topology.regions import (
+    ROUNDING,
+    Regions,
+    each_once,
+    in_domain,
+    joined,
+    named,
+    proved_regions,
+    rows_of,
+)
 from verifier.topology.slices import Slice
 from verifier.topology.undecided import merged_boxes
-
-ROUNDING: Final = 1e-12
-"""A zero this share of the domain outside of it counts as one on its border."""
 
 SMALLEST: Final = 2.0**-21
 """Boxes of this share of the domain are not halved any more."""
@@ -47,9 +47,6 @@ WORK: Final = 60_000_000
 
 SIZES: Final = (2.0, 0.5, 0.1, 0.01, 1e-3)
 """Radii of the regions that are tried around a zero, in radii of the box that led to it."""
-
-CONTRACTIONS: Final = 12
-"""So often is a box around a zero contracted at most; from a tenth of the domain it takes six."""
 
 LEAST_START: Final = {1: 64, 2: 32, 3: 12, 4: 6}
 """Boxes per axis that a search begins with, for each number of axes."""
@@ -99,25 +96,6 @@ def prove(view: Slice, controls: Array | None = None, source: Source = Source.TA
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
-class _Regions:
-    """Regions centre +- radius (k, m) with one zero each, that lies in low to high (k, m)."""
-
-    centre: Array
-    radius: Array
-    low: Array
-    high: Array
-
-    def contain(self, low: Array, high: Array) -> Booleans:
-        """For each box low to high (B, m) whether it lies in one of the regions."""
-        if not len(self.centre):
-            return np.zeros(len(low), dtype=np.bool_)
-        first, last = self.centre - self.radius, self.centre + self.radius
-        inside = (low[:, None] >= first) & (high[:, None] <= last)
-        return np.asarray(inside.all(axis=-1).any(axis=-1))
-
-
-@final
-@dataclass(frozen=True, eq=False, slots=True)
 class _Search:
     """A search under way: boxes low to high (B, m) that are still open, and what is done."""
 
@@ -125,7 +103,7 @@ class _Search:
     width: Array
     low: Array
     high: Array
-    regions: _Regions
+    regions: Regions
     stuck: tuple[tuple[Array, Array], ...]
     work: int
 
@@ -135,7 +113,7 @@ def _searched(view: Slice, field: Enclosure) -> _Search:
     m = low.shape[1]
     nothing = np.empty((0, m))
     search = _Search(
-        field, view.width, low, high, _Regions(nothing, nothing, nothing, nothing), (), 0
+        field, view.width, low, high, Regions(nothing, nothing, nothing, nothing), (), 0
     )
     search = _without_far_ones(search)
     before, grown = len(search.low), 0
@@ -268,12 +246,11 @@ def _with_regions(search: _Search, starts: Array, radius: Array) -> _Search:
     for size in SIZES:
         if not len(points):
             break
-        proved = _proved(search.field, points, size * radius)
-        ok = proved is not None and np.isfinite(proved.radius).all(axis=-1)
-        if proved is None:
-            continue
-        regions = _joined(regions, proved, np.asarray(ok))
-        points, radius = points[~ok], radius[~ok]
+        proved = proved_regions(search.field, points, size * radius)
+        if proved is not None:
+            ok = np.isfinite(proved.radius).all(axis=-1)
+            regions = joined(regions, proved, ok)
+            points, radius = points[~ok], radius[~ok]
     return replace(search, regions=regions, work=search.work + 8 * len(starts) * search.field.work)
 
 
@@ -300,63 +277,6 @@ def _different(search: _Search, points: Array, radius: Array) -> tuple[Array, Ar
     return points[first], radius[first]
 
 
-def _proved(field: Enclosure, points: Array, radius: Array) -> _Regions | None:
-    """Regions around points (B, m) with exactly one zero each; radius NaN where not proved."""
-    exact = changes(field, points, points)
-    inverses = inverses_of(slopes(field, points, points))
-    reach = np.nan_to_num(np.abs(krawczyk_step(exact, inverses)))
-    radius = np.maximum(radius, 3.0 * reach + 1e-14 * np.abs(points))
-    low, high = points - radius, points + radius
-    radius = np.nextafter(np.maximum(high - points, points - low), np.inf)
-    found = krawczyk(points, radius, exact, slopes(field, low, high), inverses)
-    ok = is_inside(found, points, radius)
-    if not np.any(ok):
-        return None
-    narrow = narrowed(found, low, high)
-    narrow = _tightened(field, *narrow, inverses, ok)
-    # A region must hold only points for which the test was made: not those that rounding added.
-    return _Regions(points, np.where(ok[:, None], radius, np.nan), *narrow)
-
-
-def krawczyk_step(values: Interval, inverses: Array) -> Array:
-    """How far (B, m) a zero may be by bounds of f at a point: |Y| |f|."""
-    size = np.maximum(np.abs(values.low), np.abs(values.high))
-    with np.errstate(invalid="ignore"):
-        step: Array = np.einsum("...ij,...j->...i", np.abs(inverses), size)
-    return step
-
-
-def _tightened(
-    field: Enclosure, low: Array, high: Array, inverses: Array, ok: Booleans
-) -> tuple[Array, Array]:
-    """Boxes around proved zeros, contracted as far as it goes."""
-    low, high = low.copy(), high.copy()
-    for _ in range(CONTRACTIONS):
-        centre = 0.5 * (low[ok] + high[ok])
-        radius = np.nextafter(np.maximum(high[ok] - centre, centre - low[ok]), np.inf)
-        values, J = changes(field, centre, centre), slopes(field, low[ok], high[ok])
-        found = krawczyk(centre, radius, values, J, inverses[ok])
-        first, last = narrowed(found, low[ok], high[ok])
-        fine = np.all(first <= last, axis=-1, keepdims=True)
-        low[ok], high[ok] = np.where(fine, first, low[ok]), np.where(fine, last, high[ok])
-        if np.all(high[ok] - low[ok] > 1.8 * radius):
-            break
-    return low, high
-
-
-def _joined(regions: _Regions, more: _Regions, ok: Booleans) -> _Regions:
-    """Both, without those whose zero is that of a region before."""
-    for i in np.flatnonzero(ok):
-        if not regions.contain(more.low[i : i + 1], more.high[i : i + 1])[0]:
-            regions = _Regions(
-                *(
-                    np.concatenate([getattr(regions, part), getattr(more, part)[i : i + 1]])
-                    for part in ("centre", "radius", "low", "high")
-                )
-            )
-    return regions
-
-
 def _stopped(search: _Search) -> _Search:
     rest = (search.low, search.high)
     nothing = np.empty((0, search.low.shape[1]))
@@ -366,11 +286,11 @@ def _stopped(search: _Search) -> _Search:
 def _reported(view: Slice, search: _Search, about: str) -> Proof:
     """What the search shows of the domain."""
     regions = search.regions
-    rows, doubtful = _once(view, regions, _in_domain(view, regions))
-    regions = _rows(regions, rows)
-    zeros, radii = _named(view, regions)
+    rows, doubtful = each_once(view, regions, in_domain(view, regions))
+    regions = rows_of(regions, rows)
+    zeros, radii = named(view, regions)
     order = [int(i) for i in np.lexsort(zeros.T[::-1])]
-    zeros, radii, regions = zeros[order], radii[order], _rows(regions, order)
+    zeros, radii, regions = zeros[order], radii[order], rows_of(regions, order)
     J = slopes(search.field, regions.low, regions.high)
     if view.is_map:
         ahead = add(J, exactly(np.eye(len(view.axes))))
@@ -391,64 +311,7 @@ def _reported(view: Slice, search: _Search, about: str) -> Proof:
     )
 
 
-def _rows(regions: _Regions, rows: list[int]) -> _Regions:
-    return _Regions(
-        regions.centre[rows], regions.radius[rows], regions.low[rows], regions.high[rows]
-    )
-
-
-def _in_domain(view: Slice, regions: _Regions) -> list[int]:
-    """Which zeros lie in the domain, or outside by no more than rounding."""
-    slack = ROUNDING * view.width
-    first, last = view.low - slack, view.low + view.width + slack
-    inside = np.all((regions.high >= first) & (regions.low <= last), axis=-1)
-    return [int(i) for i in np.flatnonzero(inside)]
-
-
-def _once(view: Slice, regions: _Regions, rows: list[int]) -> tuple[list[int], list[int]]:
-    """Each zero once, also one on a seam; and those of which it is open whether they are new.
-
-    Regions i and j speak of one zero if the zero of j lies in region i.
-    """
-    kept: list[int] = []
-    doubtful: list[int] = []
-    for j in rows:
-        standings = [_standing(view, regions, i, j) for i in kept]
-        if "same" in standings:
-            continue
-        (doubtful if "open" in standings else kept).append(j)
-    return kept, doubtful
-
-
-def _standing(view: Slice, regions: _Regions, i: int, j: int) -> str:
-    """Whether zero j is zero i, seen from whichever side of a seam: same, other or open."""
-    reach = [(-1.0, 0.0, 1.0) if around else (0.0,) for around in view.periodic]
-    slack = ROUNDING * view.width * np.array(view.periodic)
-    answer = "other"
-    for turns in product(*reach):
-        shift = np.array(turns) * view.width
-        low, high = regions.low[j] + shift - slack, regions.high[j] + shift + slack
-        first, last = (regions.centre[i] + side * regions.radius[i] for side in (-1.0, 1.0))
-        if np.all((low >= first) & (high <= last)):
-            return "same"
-        if np.all((low <= regions.high[i]) & (high >= regions.low[i])):
-            answer = "open"
-    return answer
-
-
-def _named(view: Slice, regions: _Regions) -> tuple[Array, Array]:
-    """For each zero a point of the domain and how far the zero may be from it; a seam is low."""
-    low, high = regions.low.copy(), regions.high.copy()
-    top = view.low + view.width
-    at_seam = np.array(view.periodic) & (high >= top - ROUNDING * view.width)
-    low, high = (np.where(at_seam, end - view.width, end) for end in (low, high))
-    zeros = np.clip(0.5 * (low + high), view.low, top)
-    zeros = np.where(np.abs(zeros) <= (high - low) + 1e-15 * view.width, 0.0, zeros)
-    radii = np.maximum(high - zeros, zeros - low) + 2.0**-52 * view.width * at_seam
-    return zeros, np.nextafter(np.maximum(radii, 0.0), np.inf)
-
-
-def _outside(regions: _Regions, boxes: list[tuple[Array, Array]], m: int) -> tuple[Array, Array]:
+def _outside(regions: Regions, boxes: list[tuple[Array, Array]], m: int) -> tuple[Array, Array]:
     """All open boxes, without those inside regions that were found later."""
     low = np.concatenate([np.empty((0, m)), *(low for low, _ in boxes)])
     high = np.concatenate([np.empty((0, m)), *(high for _, high in boxes)])
