@@ -146,7 +146,7 @@ def test_the_dump_of_a_program_is_stable(
     expect: Callable[[Path, str], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
-    for name in ("van_der_pol", "husky_drive", "line_steps", "corridor"):
+    for name in ("van_der_pol", "husky_drive", "line_steps", "corridor", "patrol"):
         program = compile_file(Path(f"specs/{name}.yaml"), lambda _what, _done, _of: None).program
 
         expect(ROOT / "tests" / "golden" / "programs" / f"{name}.txt", dump(program))

@@ -92,3 +92,25 @@ def relay() -> Program:
         {"up": ("2 x sub", "y neg"), "down": ("-2 x sub", "y neg")},
         (("up", "down", "x 1 sub", {}), ("down", "up", "-1 x sub", {})),
     )
+
+
+def docking() -> Program:
+    """Out until x = 1, then to rest at (1.5, 0); the other way of the first mode leads nowhere."""
+    return switching(
+        (state("x", -2.0, 2.0), state("y", -2.0, 2.0)),
+        {"out": ("1", "y neg"), "dock": ("1.5 x sub", "y neg")},
+        (("out", "dock", "x 1 sub", {}),),
+    )
+
+
+def spinning() -> Program:
+    """In from the rim, then round the unit circle, which the second mode never leaves."""
+    inside = "1 x x mul sub y y mul sub"
+    return switching(
+        (state("x", -2.0, 2.0), state("y", -2.0, 2.0)),
+        {
+            "approach": ("x neg", "y neg"),
+            "spin": (f"x {inside} mul y sub", f"y {inside} mul x add"),
+        },
+        (("approach", "spin", "0.25 x x mul sub y y mul sub", {}),),
+    )

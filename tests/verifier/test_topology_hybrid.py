@@ -11,11 +11,19 @@ from scipy.optimize import brentq
 
 from compiler.compile import compile_file
 from runtime.program import Program
-from tests.verifier.hybrid_scenes import bouncing_ball, carousel, relay, slanted, thermostat
-from verifier.topology.features import Cycle, Stability
+from tests.verifier.hybrid_scenes import (
+    bouncing_ball,
+    carousel,
+    docking,
+    relay,
+    slanted,
+    spinning,
+    thermostat,
+)
+from verifier.topology.features import Cycle, PointKind, Stability
 from verifier.topology.hybrid import Hybrid, hybrid_of, leaves_at
 from verifier.topology.hybrid_cycles import find_hybrid_cycles
-from verifier.topology.portrait import portrait
+from verifier.topology.portrait import Detail, portrait
 from verifier.topology.slices import cut
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -182,6 +190,41 @@ def test_a_portrait_shows_where_its_mode_is_left_and_paths_through_all_modes() -
         assert np.all(np.diff(path.times) >= 0.0)
         assert path.points[:, 0].max() <= 1.0 + 1e-9
     assert any("going = 'forward'" in note for note in found.notes)
+
+
+def test_rest_in_a_later_mode_attracts_from_the_first() -> None:
+    found = portrait(docking(), held={"mode": 0.0}, detail=Detail(basins=40))
+
+    [point] = found.fixed_points
+    assert point.kind is PointKind.STABLE_NODE
+    np.testing.assert_allclose(point.at, [1.5, 0.0], atol=1e-9)
+    assert any("the stable node at x = 1.5, y = 0 is one of 'dock'" in n for n in found.notes)
+    assert found.basins is not None
+    assert [attractor.share for attractor in found.basins.attractors] == [1.0]
+
+
+def test_a_cycle_of_a_mode_that_is_not_left_is_one_of_the_behavior() -> None:
+    found = portrait(spinning(), held={"mode": 0.0}, detail=Detail(basins=20))
+
+    [cycle] = found.cycles
+    assert cycle.period == pytest.approx(2.0 * math.pi, rel=1e-8)
+    assert set(cycle.modes) == {1}
+    # The zero of the first mode is left; that of the second repels.
+    [point] = found.fixed_points
+    assert point.kind is PointKind.UNSTABLE_FOCUS
+    assert found.basins is not None
+    assert found.basins.attractors[-1].share == 1.0
+
+
+@pytest.mark.parametrize("program", [PATROL, TURNING])
+def test_nearly_everything_comes_to_the_patrol(program: Program) -> None:
+    basins = portrait(program, detail=Detail(basins=40)).basins
+
+    assert basins is not None
+    [attractor] = basins.attractors
+    assert attractor.share > 0.97
+    # What starts near the edge and goes fast towards it can't be stopped in time.
+    assert attractor.share + basins.leaves == pytest.approx(1.0)
 
 
 def test_no_modes_no_hybrid() -> None:

@@ -17,8 +17,8 @@ from verifier.topology.capture import STABLE
 from verifier.topology.features import Attractor, Basins, Cycle, FixedPoint
 from verifier.topology.hybrid import Hybrid, followed, on_axes, points_in
 
-LOOKS: Final = (16.0, 64.0, 256.0)
-"""After how long, in tempos, lanes are looked at; those that have come to no end go on."""
+LOOKS: Final = (2.0, 3.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)
+"""How long, in tempos, lanes go on from look to look, those that have come to no end."""
 TOLERANCE: Final = 1e-6
 AGAIN: Final = 0.37
 """How much later, in tempos, a lane must still be there: it may only have passed."""
@@ -44,13 +44,13 @@ class Goal:
 
 def find_hybrid_basins(
     hybrid: Hybrid,
-    fixed_points: tuple[FixedPoint, ...],
+    fixed_points: tuple[tuple[FixedPoint, int], ...],
     cycles: tuple[Cycle, ...],
     cells: int,
 ) -> Basins | None:
     """The attractor of the centre of each of `cells` per axis; None where nothing attracts.
 
-    Fixed points are those of the shown mode. What leaves the domain on the way, also by a jump,
+    fixed_points: each with its mode. What leaves the domain on the way, also by a jump,
     leaves; what chatters is open.
     """
     goals = _goals(hybrid, fixed_points, cycles)
@@ -75,12 +75,12 @@ def find_hybrid_basins(
 
 
 def _goals(
-    hybrid: Hybrid, fixed_points: tuple[FixedPoint, ...], cycles: tuple[Cycle, ...]
+    hybrid: Hybrid, fixed_points: tuple[tuple[FixedPoint, int], ...], cycles: tuple[Cycle, ...]
 ) -> tuple[Goal, ...]:
     view = hybrid.view
     points = [
-        Goal(is_cycle=False, index=i, tree=_tree(hybrid, point.at[None], np.array([hybrid.shown])))
-        for i, point in enumerate(fixed_points)
+        Goal(is_cycle=False, index=i, tree=_tree(hybrid, point.at[None], np.array([mode])))
+        for i, (point, mode) in enumerate(fixed_points)
         if point.kind in STABLE
     ]
     closed = [

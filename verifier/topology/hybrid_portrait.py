@@ -4,14 +4,16 @@ m: number of axes; n: of states.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
-from typing import Final
+from dataclasses import dataclass, replace
+from typing import Final, final
 
 import numpy as np
 
 from runtime.arrays import Array, frozen
 from verifier.topology.contours import zero_lines
+from verifier.topology.cycles import find_cycles
 from verifier.topology.features import (
+    Completeness,
     Course,
     Cycle,
     FixedPoint,
@@ -20,6 +22,7 @@ from verifier.topology.features import (
     Switching,
     Trajectory,
 )
+from verifier.topology.fixed_points import find_fixed_points
 from verifier.topology.hybrid import (
     ROUGH,
     Hybrid,
@@ -32,11 +35,23 @@ from verifier.topology.hybrid import (
 from verifier.topology.hybrid_basins import find_hybrid_basins
 from verifier.topology.hybrid_cycles import find_hybrid_cycles
 from verifier.topology.seeds import spread
-from verifier.topology.slices import wrapped
+from verifier.topology.slices import cut, rates_at, wrapped
 
 LASTING: Final = 4.0
 """How long paths are followed, in tempos."""
 SAMPLES: Final = 400
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class InMode:
+    """What one mode's field has where the mode is not left, and notes on what it seems to have."""
+
+    mode: int
+    fixed_points: tuple[FixedPoint, ...]
+    cycles: tuple[Cycle, ...]
+    completeness: Completeness
+    notes: tuple[str, ...]
 
 
 def with_modes(
@@ -44,58 +59,98 @@ def with_modes(
 ) -> Portrait:
     """The portrait with all modes, given `plain`: as if the shown mode were never left.
 
-    cycles: whether those through several modes are looked for; paths: how many are followed;
-    basins: cells per axis. Separatrices are not traced.
+    cycles: whether they are looked for; paths: how many are followed; basins: cells per axis.
+    Separatrices are not traced.
     """
-    fixed_points, gone = _kept(hybrid, plain.fixed_points)
-    found, notes = find_hybrid_cycles(hybrid) if cycles else ((), ())
-    closed = (*_within(hybrid, plain.cycles), *found)
+    shown = _kept(hybrid, hybrid.shown, (plain.fixed_points, plain.cycles, plain.completeness))
+    others = (mode for mode in range(len(hybrid.modes)) if mode != hybrid.shown)
+    each = (shown, *(_in_mode(hybrid, mode, grid, cycles=cycles) for mode in others))
+    through, notes = find_hybrid_cycles(hybrid) if cycles else ((), ())
+    closed = (*through, *(cycle for one in each for cycle in one.cycles))
     closed = tuple(sorted(closed, key=lambda cycle: cycle.period))
+    resting = tuple((point, one.mode) for one in each for point in one.fixed_points)
     planar = len(hybrid.view.axes) == 2
-    mode, shown = hybrid.flow.program.field.mode, hybrid.modes[hybrid.shown]
-    about = f"field and fixed points are those of {mode} = '{shown}'; cycles go through all modes"
     return replace(
         plain,
-        fixed_points=fixed_points,
+        fixed_points=tuple(point for point, _ in resting),
+        completeness=_together([one.completeness for one in each]),
         cycles=closed,
         separatrices=(),
-        basins=find_hybrid_basins(hybrid, fixed_points, closed, basins),
+        basins=find_hybrid_basins(hybrid, resting, closed, basins),
         switching=tuple(_lines(hybrid, grid)) if planar else (),
         trajectories=tuple(_paths(hybrid, paths)) if len(hybrid.view.axes) > 1 and paths else (),
-        notes=(about, *plain.notes, *gone, *notes),
+        notes=(
+            _about(hybrid),
+            *plain.notes,
+            *(_where(hybrid, point, mode) for point, mode in resting if mode != hybrid.shown),
+            *(note for one in each for note in one.notes),
+            *notes,
+        ),
     )
+
+
+def _about(hybrid: Hybrid) -> str:
+    mode, shown = hybrid.flow.program.field.mode, hybrid.modes[hybrid.shown]
+    return (
+        f"the field is that of {mode} = '{shown}'; fixed points and cycles are those of all modes"
+    )
+
+
+def _where(hybrid: Hybrid, point: FixedPoint, mode: int) -> str:
+    return f"the {point.kind} at {_place(hybrid, point.at)} is one of '{hybrid.modes[mode]}'"
+
+
+def _in_mode(hybrid: Hybrid, mode: int, grid: Grid, *, cycles: bool) -> InMode:
+    """What another mode than the shown one has."""
+    whole = hybrid.view.whole.program
+    held = {each.name: each.value for each in hybrid.view.held} | {whole.field.mode: float(mode)}
+    view = cut(whole, tuple(axis.name for axis in hybrid.view.axes), held)
+    places = np.stack(np.meshgrid(*grid.nodes, indexing="ij"), axis=-1)
+    points, completeness, _ = find_fixed_points(view, Grid(grid.nodes, rates_at(view, places)))
+    closed = find_cycles(view, points)[0] if cycles else ()
+    return _kept(hybrid, mode, (points, closed, completeness))
 
 
 def _kept(
-    hybrid: Hybrid, fixed_points: tuple[FixedPoint, ...]
-) -> tuple[tuple[FixedPoint, ...], tuple[str, ...]]:
-    """The points where the shown mode is not left, and a note on the others."""
-    if not fixed_points:
-        return (), ()
-    places = np.array([point.at for point in fixed_points])
-    left = leaves_at(hybrid, wrapped(hybrid.view, places), hybrid.shown)
-    kept = tuple(point for point, gone in zip(fixed_points, left, strict=True) if not gone)
-    shown = hybrid.modes[hybrid.shown]
-    notes = tuple(
-        f"no fixed point, although the field of '{shown}' is zero there, as that mode is left: "
-        f"{_place(hybrid, point.at)}"
-        for point, gone in zip(fixed_points, left, strict=True)
-        if gone
+    hybrid: Hybrid,
+    mode: int,
+    found: tuple[tuple[FixedPoint, ...], tuple[Cycle, ...], Completeness],
+) -> InMode:
+    """What lies where the mode is not left, and a note on each point that does not."""
+    points, cycles, completeness = found
+    left = [bool(leaves_at(hybrid, wrapped(hybrid.view, p.at[None]), mode)[0]) for p in points]
+    return InMode(
+        mode,
+        tuple(point for point, gone in zip(points, left, strict=True) if not gone),
+        tuple(
+            replace(cycle, modes=(mode,) * len(cycle.points))
+            for cycle in cycles
+            if not leaves_at(hybrid, wrapped(hybrid.view, cycle.points), mode).any()
+        ),
+        completeness,
+        tuple(
+            f"no fixed point, although the field of '{hybrid.modes[mode]}' is zero there, as that "
+            f"mode is left: {_place(hybrid, point.at)}"
+            for point, gone in zip(points, left, strict=True)
+            if gone
+        ),
     )
-    return kept, notes
+
+
+def _together(each: list[Completeness]) -> Completeness:
+    """What is known of all modes: as much as of the one of which least is known."""
+    abouts = {one.about for one in each}
+    return Completeness(
+        complete=all(one.complete for one in each),
+        undecided=tuple(box for one in each for box in one.undecided),
+        lost=frozen(np.concatenate([one.lost for one in each])),
+        about=abouts.pop() if len(abouts) == 1 else "",
+    )
 
 
 def _place(hybrid: Hybrid, at: Array) -> str:
     axes = zip(hybrid.view.axes, at, strict=True)
     return ", ".join(f"{axis.name} = {value / axis.unit.scale:.4g}" for axis, value in axes)
-
-
-def _within(hybrid: Hybrid, cycles: tuple[Cycle, ...]) -> Iterator[Cycle]:
-    """Cycles of the shown mode along which it is never left."""
-    for cycle in cycles:
-        points = wrapped(hybrid.view, cycle.points)
-        if not leaves_at(hybrid, points, hybrid.shown).any():
-            yield replace(cycle, modes=(hybrid.shown,) * len(points))
 
 
 def _lines(hybrid: Hybrid, grid: Grid) -> Iterator[Switching]:

@@ -233,9 +233,14 @@ def _touching(
 
 
 def _vertex(s: Array, heights: Array) -> tuple[float, float]:
-    """Where the parabola fitted to `heights` is least, within s, and how high it is there."""
+    """Where the parabola fitted to `heights` is least, within s, and how high it is there.
+
+    Infinitely high where too few of them are finite.
+    """
     known = np.isfinite(heights)
     middle, half = 0.5 * (s[0] + s[-1]), 0.5 * (s[-1] - s[0])
+    if np.sum(known) < 3:
+        return float(middle), np.inf
     parabola = np.polyfit((s[known] - middle) / half, heights[known], 2)
     place = np.clip(-0.5 * parabola[1] / max(parabola[0], 1e-300), -1.0, 1.0)
     return float(middle + half * place), float(np.polyval(parabola, place))
