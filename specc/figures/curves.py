@@ -127,8 +127,13 @@ def draw_separatrices(panel: Panel, portrait: Portrait) -> list[Entry]:
 
 def draw_cycles(panel: Panel, portrait: Portrait) -> list[Entry]:
     """Closed trajectories: stable solid, unstable dashed; of a map, the points of its orbits."""
-    draw = _draw_orbit_of_map if portrait.every > 0.0 else _draw_cycle
-    return [draw(panel, cycle) for cycle in portrait.cycles]
+    if portrait.every == 0.0:
+        return [_draw_cycle(panel, cycle) for cycle in portrait.cycles]
+    present = [s for s in Stability if any(c.stability is s for c in portrait.cycles)]
+    return [
+        _draw_orbits_of_map(panel, s, [c for c in portrait.cycles if c.stability is s])
+        for s in present
+    ]
 
 
 def _draw_cycle(panel: Panel, cycle: Cycle) -> Entry:
@@ -144,18 +149,22 @@ def _draw_cycle(panel: Panel, cycle: Cycle) -> Entry:
     return line_entry(f"{cycle.stability} cycle", **stroke.look)
 
 
-def _draw_orbit_of_map(panel: Panel, cycle: Cycle) -> Entry:
+def _draw_orbits_of_map(panel: Panel, stability: Stability, cycles: list[Cycle]) -> Entry:
+    """The points of all periodic orbits of one stability, with their periods in steps."""
     palette = panel.palette
+    is_stable = stability is Stability.STABLE
     look: Look = {
         "linestyle": "none",
         "marker": "h",
+        "markersize": 6.5 if is_stable else 4.5,
         "markeredgecolor": palette.cycle,
-        "markerfacecolor": palette.cycle if cycle.is_attracting else palette.paper,
+        "markerfacecolor": palette.cycle if is_stable else palette.paper,
     }
-    points = panel.shown(cycle.points[:-1])
-    panel.axes.plot(*points.T, markersize=6.5 * panel.weight, zorder=6, **look)
-    label = f"{cycle.stability} orbit of period {len(cycle.points) - 1}"
-    return line_entry(label, markersize=6.5, **look)
+    points = panel.shown(np.concatenate([cycle.points[:-1] for cycle in cycles]))
+    panel.axes.plot(*points.T, zorder=6, **look)
+    periods = sorted({len(cycle.points) - 1 for cycle in cycles})
+    label = f"{stability} orbit, period {', '.join(map(str, periods))}"
+    return line_entry(label, **look)
 
 
 def at_jumps(times: Array, points: Array) -> tuple[list[Array], list[Array]]:

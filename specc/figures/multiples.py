@@ -37,7 +37,7 @@ WEIGHT: Final = 0.72
 WIDEST: Final = 7.4
 """Of all panels together, in inches."""
 
-GAP: Final = 0.2
+GAP: Final = 0.32
 """Between panels, in inches."""
 
 ABOVE: Final = 0.25
@@ -98,7 +98,8 @@ def _draw(panel: Panel, portrait: Portrait) -> list[Entry]:
 def _name(axes: Axes, portrait: Portrait, swept: str) -> None:
     """The value that the panel stands for, above it."""
     (held,) = (h for h in portrait.held if h.name == swept)
-    axes.set_title(f"{swept} = {quantity(held.value, held.unit)}", loc="left", fontsize=9.0, pad=4)
+    value = held.label or quantity(held.value, held.unit)
+    axes.set_title(f"{swept} = {value}", loc="left", fontsize=9.0, pad=4)
 
 
 def _share_labels(axes: Axes, *, first_column: bool, last_row: bool) -> None:

@@ -67,7 +67,8 @@ def evenly_spaced(sheet: Sheet, spacing: Spacing, drawn: Sequence[Array] = ()) -
         line = _free_stretch(taken, lanes[nearest], half - 1, spacing)
         away[nearest] = 0.0
         if (len(line) - 1) * spacing.step >= spacing.shortest:
-            lines.append(line)
+            # The step that left the sheet ends at its edge.
+            lines.append(np.clip(line, 0.0, sheet.size))
             _take(taken, line, spacing)
             away = np.minimum(away, _distances(seeds, line))
     return lines

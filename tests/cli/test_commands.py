@@ -86,6 +86,27 @@ def test_portrait_draws_in_every_format(suffix: str) -> None:
     assert Path(f"p.{suffix}").stat().st_size > 1000
 
 
+def test_portrait_sweeps_a_control_and_cuts_a_state_into_slices(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    spec = str(SPECS / "wall_follow.yaml")
+    with_sweep = ["portrait", spec, "--axes", "distance", "--sweep", "speed=0.2:0.4:3"]
+    assert main([*with_sweep, "-f", "json", "-o", "sweep.svg"]) == 0
+    swept = result(capsys)
+    assert [p["held"]["speed"] for p in swept["portraits"]] == pytest.approx([0.2, 0.3, 0.4])
+    assert main(["portrait", spec, "--slices", "heading=2", "-f", "json"]) == 0
+    assert [p["axes"] for p in result(capsys)["portraits"]] == [["distance"]] * 2
+    assert Path("sweep.svg").stat().st_size > 1000
+
+
+def test_portrait_holds_values_by_at_and_draws_in_the_style_asked_for() -> None:
+    spec = str(SPECS / "keep_left.yaml")
+    for style in ("journal", "dark"):
+        assert main(["portrait", spec, "--style", style, "-o", f"{style}.svg"]) == 0
+    assert "#10151c" in Path("dark.svg").read_text()
+    assert "#10151c" not in Path("journal.svg").read_text()
+
+
 @pytest.mark.parametrize("name", ["van_der_pol", "phototaxis", "line_steps", "corridor"])
 def test_a_recording_verifies_against_the_spec_that_it_carries(
     name: str, capsys: pytest.CaptureFixture[str]
@@ -179,6 +200,11 @@ def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
         (["simulate", VDP, "-o", "run.txt"], "V345"),
         (["portrait", VDP, "--axes", "x,w"], "V346"),
         (["portrait", VDP, "-o", "p.bmp"], "V345"),
+        (["portrait", VDP, "--sweep", "nu=1:2:3"], "no control or state is named 'nu'"),
+        (["portrait", VDP, "--sweep", "mu=1:2"], "write mu=LOW:HIGH:COUNT"),
+        (["portrait", VDP, "--sweep", "mu=1:9:3"], "outside the domain"),
+        (["portrait", VDP, "--sweep", "mu=99"], "1 to 24 values"),
+        (["portrait", VDP, "--sweep", "mu=2", "--slices", "v=2"], "take one of"),
         (["verify", "nowhere.mcap", "--spec", VDP], "V301"),
         (["verify", VDP], "V334"),
         (["init", "--template", "van_der_poll"], "V343"),
