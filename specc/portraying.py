@@ -9,6 +9,7 @@ import numpy as np
 from runtime.program import Control, Kind, Program, State
 from specc.faults import fault
 from specc.given import Value, settings_for
+from verifier.topology.branching import find_branches
 from verifier.topology.continuation import Branches
 from verifier.topology.features import Portrait
 from verifier.topology.portrait import Detail
@@ -72,6 +73,34 @@ def sweep(
     given = held or {}
     panels = tuple(_portrait(program, names, {**given, name: v}, SMALL) for v in chosen)
     return Sweep(name, panels)
+
+
+def branches(
+    program: Program,
+    name: str,
+    ends: str | None = None,
+    held: Mapping[str, Value] | None = None,
+) -> Branches:
+    """The bifurcation diagram against a control: over its domain, or over `low:high`.
+
+    Raises:
+        SpecError: no such control, values outside its domain, or another form of text.
+    """
+    part = next((c for c in program.controls if c.name == name), None)
+    if part is None:
+        known = ", ".join(c.name for c in program.controls) or "none"
+        raise fault("V341", name, f"no control is named '{name}'", f"there are {known}")
+    pieces = [piece.strip() for piece in (ends or "").split(":")]
+    if ends is not None and len(pieces) != 2:
+        message = "this is no range of values"
+        raise fault("V342", f"{name}={ends}", message, f"write {name}=LOW:HIGH")
+    limits = None if ends is None else _ends(part, pieces)
+    parts: tuple[State | Control, ...] = (*program.states, *program.controls)
+    settings = settings_for(parts, held or {}, "state or control")
+    try:
+        return find_branches(program, name, settings, limits)
+    except SliceError as error:
+        raise fault("V342", program.source.file, str(error)) from error
 
 
 def swept_values(program: Program, name: str, text: str) -> tuple[Value, ...]:

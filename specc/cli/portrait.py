@@ -87,6 +87,11 @@ def portrait(
         case str(text), None if not (sweep and slices):
             name, values = one_assignment(text)
             found = portraying.sweep(program, name, values, names, held)
+        case None, str(text) if names is None:
+            name, _, ends = text.partition("=")
+            found = portraying.branches(program, name.strip(), ends or None, held)
+        case None, _:
+            raise typer.BadParameter("--against looks at all states that move: leave --axes out")
         case _:
             raise typer.BadParameter("take one of --sweep, --slices and --against")
     if form is Format.JSON:

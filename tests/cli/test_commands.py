@@ -205,6 +205,8 @@ def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
         (["portrait", VDP, "--sweep", "mu=1:9:3"], "outside the domain"),
         (["portrait", VDP, "--sweep", "mu=99"], "1 to 24 values"),
         (["portrait", VDP, "--sweep", "mu=2", "--slices", "v=2"], "take one of"),
+        (["portrait", VDP, "--against", "nu"], "no control is named 'nu'"),
+        (["portrait", VDP, "--against", "mu=1"], "write mu=LOW:HIGH"),
         (["verify", "nowhere.mcap", "--spec", VDP], "V301"),
         (["verify", VDP], "V334"),
         (["init", "--template", "van_der_poll"], "V343"),

@@ -35,7 +35,6 @@ from verifier.topology.features import (
 )
 from verifier.topology.portrait_json import as_json
 
-
 OUTSIDE_ONE_BOX = (
     "Undecided in one box; proved of the tables: outside, there are exactly 2 fixed points"
 )
