@@ -26,8 +26,8 @@ from verifier.topology.classification import classified
 from verifier.topology.features import FixedPoint, PointKind, Portrait
 from verifier.topology.portrait import Detail, portrait
 
-POINTS_ONLY = Detail(plane=129, line=1025, trajectories=0)
-COARSE = Detail(plane=65, trajectories=0)
+POINTS_ONLY = Detail(plane=129, line=1025, trajectories=0, cycles=False, separatrices=False)
+COARSE = Detail(plane=65, trajectories=0, cycles=False, separatrices=False)
 EIGENVALUES = 1e-7  # the runtime's differences are good to about 1e-9 of the field's rates
 
 
