@@ -1,5 +1,6 @@
 """Behaviors with modes whose cycles are known in closed form."""
 
+import math
 from dataclasses import replace
 
 from runtime.code import Code
@@ -113,4 +114,16 @@ def spinning() -> Program:
             "spin": (f"x {inside} mul y sub", f"y {inside} mul x add"),
         },
         (("approach", "spin", "0.25 x x mul sub y y mul sub", {}),),
+    )
+
+
+def crank() -> Program:
+    """A wheel that turns faster and slower by turns, switching twice a turn."""
+    return switching(
+        (
+            state("angle", -math.pi, math.pi, kind=Kind.PERIODIC),
+            state("rate", 0.0, 4.0),
+        ),
+        {"slow": ("rate", "1 rate sub"), "fast": ("rate", "3 rate sub")},
+        (("slow", "fast", "angle sin 0.5 sub", {}), ("fast", "slow", "-0.5 angle sin sub", {})),
     )

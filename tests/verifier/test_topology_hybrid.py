@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from compiler.compile import compile_file
+from runtime.arrays import Array
 from runtime.program import Program
 from tests.verifier.hybrid_scenes import (
     bouncing_ball,
     carousel,
+    crank,
     docking,
     relay,
     slanted,
@@ -138,6 +141,36 @@ def test_a_slanted_guard_against_an_independent_return_map(keep: float, lift: fl
     assert cycle.period == pytest.approx(1.5 * leaves(y), rel=1e-9)
     assert cycle.multipliers[0] == pytest.approx(slope, abs=1e-6)
     assert cycle.cross_checked[0] == pytest.approx(slope, abs=1e-6)
+    assert not cycle.doubtful
+
+
+def test_a_cycle_round_a_periodic_axis_against_an_independent_integration() -> None:
+    def until(speed: float, start: Array, sign: float) -> tuple[float, Array]:
+        """When sign * sin(angle) rises to 0.5, and the state there."""
+
+        def field(_t: float, y: Array) -> Array:
+            return np.array([y[1], speed - y[1]])
+
+        def crossed(_t: float, y: Array) -> float:
+            return sign * math.sin(y[0]) - 0.5
+
+        crossed.direction = 1.0  # type: ignore[attr-defined]  # as scipy asks
+        ran = solve_ivp(field, (0.0, 9.0), start, "DOP853", events=crossed, rtol=1e-11, atol=1e-12)
+        assert ran.t_events is not None
+        assert ran.y_events is not None
+        return float(ran.t_events[0][0]), np.array(ran.y_events[0][0])
+
+    state, turn = np.array([0.0, 2.0]), 0.0
+    for _ in range(12):
+        first, state = until(1.0, state, 1.0)
+        second, state = until(3.0, state, -1.0)
+        turn = first + second
+
+    [cycle] = cycles(crank())
+
+    assert cycle.period == pytest.approx(turn, rel=1e-9)
+    assert cycle.turns == (1, 0)
+    assert cycle.points[-1, 0] - cycle.points[0, 0] == pytest.approx(2.0 * math.pi)
     assert not cycle.doubtful
 
 
