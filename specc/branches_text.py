@@ -26,7 +26,10 @@ def branches_summary(branches: Branches) -> str:
 def bifurcation_sentence(found: Bifurcation, unit: Unit) -> str:
     """What happens, and at which value of the control."""
     within = quantity(found.within, unit, 1)
-    return f"{found.change} at {quantity(found.value, unit, 5)} ± {within}: {found.about}"
+    # No digit is written that is not known.
+    known = max(found.within, 1e-12 * unit.scale)
+    value = round(found.value / known) * known
+    return f"{found.change} at {quantity(value, unit, 6)} ± {within}: {found.about}"
 
 
 def _branch(what: str, values: Array, types: Sequence[str], unit: Unit) -> str:

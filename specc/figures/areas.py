@@ -75,7 +75,10 @@ def attractor_name(portrait: Portrait, attractor: Attractor) -> str:
         return f"the cycle of {number(portrait.cycles[attractor.index].period)} s"
     point = portrait.fixed_points[attractor.index]
     pairs = list(zip(portrait.axes, point.at.tolist(), strict=True))
-    values = [number(value / axis.unit.scale) for axis, value in pairs]
+    # To a thousandth of the axis: 1e-7 m is 0 on a portrait of 4 m.
+    steps = [1e-3 * axis.width for axis, _ in pairs]
+    rounded = [round(v / step) * step for (_, v), step in zip(pairs, steps, strict=True)]
+    values = [number(v / axis.unit.scale) for (axis, _), v in zip(pairs, rounded, strict=True)]
     if len(pairs) == 1:
         return f"{pairs[0][0].name} = {values[0]}"
     return f"({', '.join(values)})"
