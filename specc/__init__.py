@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from spec_schema.diagnostics import Diagnostic as Diagnostic
     from spec_schema.diagnostics import SpecError as SpecError
     from specc.claiming import check_claims as check_claims
+    from specc.comparing import compare_behaviors as compare_behaviors
     from specc.drawn import draw as draw
     from specc.loading import compile_spec as compile_spec
     from specc.loading import load_program as load_program
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
+    from verifier.topology.comparison import Comparison as Comparison
     from verifier.topology.features import Portrait as Portrait
     from verifier.topology.findings import Finding as Finding
 
@@ -40,6 +42,7 @@ HOMES = {
     "Verification": "specc.verifying",
     "check": "compiler.check",
     "check_claims": "specc.claiming",
+    "compare_behaviors": "specc.comparing",
     "compile_spec": "specc.loading",
     "dump": "compiler.dump",
     "load_program": "specc.loading",
@@ -52,6 +55,7 @@ HOMES = {
     "write_report": "specc.reported",
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
+    "Comparison": "verifier.topology.comparison",
     "Portrait": "verifier.topology.features",
     "Finding": "verifier.topology.findings",
 }
