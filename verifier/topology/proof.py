@@ -248,7 +248,7 @@ def _with_regions(search: _Search, starts: Array, radius: Array) -> _Search:
             break
         proved = proved_regions(search.field, points, size * radius)
         if proved is not None:
-            ok = np.isfinite(proved.radius).all(axis=-1)
+            ok = np.asarray(np.isfinite(proved.radius).all(axis=-1))
             regions = joined(regions, proved, ok)
             points, radius = points[~ok], radius[~ok]
     return replace(search, regions=regions, work=search.work + 8 * len(starts) * search.field.work)
