@@ -112,7 +112,7 @@ def verdict_at(
         known = {
             key
             for before in above
-            if before.feature != BASIN
+            if before.feature != BASIN and before.most != 0
             for key in named(scenes.program, before, seen, settings)
         }
         found = tuple(member for member in found if member.key not in known)

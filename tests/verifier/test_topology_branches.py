@@ -1,0 +1,83 @@
+"""Bifurcation diagrams against closed forms (Strogatz 2015, chapters 3 and 8)."""
+
+import numpy as np
+import pytest
+
+from runtime.program import Program
+from tests.verifier.claim_scenes import FOLD, FORK, ONSET
+from tests.verifier.topology_scenes import behavior, control, state
+from verifier.topology.branching import find_branches
+from verifier.topology.continuation import Branches, Change
+from verifier.topology.features import PointKind
+from verifier.topology.slices import SliceError
+
+
+def diagram(program: Program, samples: int = 11) -> Branches:
+    return find_branches(program, "mu", {}, samples=samples)
+
+
+@pytest.mark.parametrize(
+    ("program", "value", "change"),
+    [
+        (FOLD, 0.2, Change.SADDLE_NODE),
+        (FORK, -0.1, Change.PITCHFORK),
+        (ONSET, -0.15, Change.HOPF),
+    ],
+    ids=["saddle-node", "pitchfork", "Hopf"],
+)
+def test_a_bifurcation_is_located_and_named(program: Program, value: float, change: Change) -> None:
+    [found] = diagram(program).bifurcations
+
+    assert found.change is change
+    assert abs(found.value - value) <= max(found.within, 1e-6) <= 1e-4
+    assert np.abs(found.at).max() < 0.02
+
+
+def test_branches_follow_the_roots() -> None:
+    stable, unstable = sorted(
+        diagram(FOLD).points, key=lambda branch: branch.kinds[-1] is PointKind.UNSTABLE_NODE
+    )
+
+    for branch, sign in ((stable, 1.0), (unstable, -1.0)):
+        assert branch.points[:, 0] == pytest.approx(sign * np.sqrt(branch.values - 0.2), abs=0.02)
+        assert branch.values[0] == pytest.approx(0.2, abs=1e-5)
+        assert branch.values[-1] == 1.0
+        assert np.all(np.diff(branch.values) > 0.0)
+
+
+def test_a_cycle_grows_with_the_root_of_the_distance_to_its_onset() -> None:
+    found = diagram(ONSET)
+
+    [cycle] = found.cycles
+    assert cycle.highs[:, 0] == pytest.approx(np.sqrt(cycle.values + 0.15), rel=2e-3)
+    assert cycle.periods == pytest.approx(2.0 * np.pi, rel=1e-6)
+    [point] = found.points
+    before = point.values < -0.15
+    assert {kind for kind, b in zip(point.kinds, before, strict=True) if b} == {
+        PointKind.STABLE_FOCUS
+    }
+
+
+def test_a_map_doubles_its_period() -> None:
+    # The logistic map r x (1 - x): at r = 3 the fixed point 1 - 1/r loses its stability.
+    program = behavior(
+        "logistic",
+        (state("x", 0.05, 0.95),),
+        ("mu x mul 1 x sub mul",),
+        (control("mu", 2.5, 3.4, 3.0),),
+        every=1.0,
+    )
+
+    found = find_branches(program, "mu", {}, samples=7)
+
+    doubling = [b for b in found.bifurcations if b.change is Change.PERIOD_DOUBLING]
+    assert [b.value for b in doubling] == pytest.approx([3.0], abs=1e-4)
+
+
+def test_what_can_not_be_followed_is_said() -> None:
+    with pytest.raises(SliceError, match="no control is named 'nu'"):
+        find_branches(FOLD, "nu", {})
+    with pytest.raises(SliceError, match="can't be held"):
+        find_branches(FOLD, "mu", {"mu": 0.1})
+    with pytest.raises(SliceError, match=r"within -1\.\.1"):
+        find_branches(FOLD, "mu", {}, (-3.0, 0.5))
