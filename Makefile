@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless bench schema clean
+.PHONY: help demo test check format bless bench schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -40,6 +40,9 @@ bless: .venv/ready ## rewrite the golden files from what comes out; read the dif
 schema: .venv/ready ## rewrite the JSON Schemas in docs/schema
 	$(BIN)/specc schema behavior > docs/schema/behavior.schema.json
 	$(BIN)/specc schema project > docs/schema/project.schema.json
+
+gallery: .venv/ready ## draw docs/img and docs/gallery.md
+	$(BIN)/python docs/draw_gallery.py
 
 bench: .venv/ready ## table lookup beside its peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
