@@ -1,21 +1,39 @@
 """Whether a compiled sketch looks as it was drawn: the verifier's word to the compiler."""
 
 from dataclasses import replace
+from typing import Final
 
-from runtime.program import Program
+from runtime.program import Control, Program
 from verifier.topology.claims import judge
-from verifier.topology.findings import Ruling
+from verifier.topology.findings import Finding, Ruling, Settings
+
+SHARES: Final = ((0.02, 0.98), (0.98, 0.02))
+"""Beside the defaults: every other control near one end of its domain, the rest near the other."""
 
 
 def faults_of(program: Program) -> tuple[str, ...]:
-    """What the program's field lacks of its sketch, or has beside it, at the controls' defaults.
+    """What the program's field lacks of its sketch, or has beside it, in sentences.
 
-    Over whole domains of controls the same claims are judged by `specc check --claims`.
+    Looked at with the controls at their defaults and near opposite corners of their domains.
     """
-    claims = tuple(replace(claim, over=()) for claim in program.claims if claim.sketched)
-    found = judge(program, claims)
+    corners = [_corner(program.controls, shares) for shares in SHARES] if program.controls else []
+    for settings in ((), *corners):
+        claims = tuple(replace(c, settings=settings) for c in program.claims if c.sketched)
+        found = judge(program, claims)
+        faults = tuple(_told(f) for f in found if f.ruling is Ruling.REFUTED)
+        if faults:
+            return faults
+    return ()
+
+
+def _corner(controls: tuple[Control, ...], shares: tuple[float, float]) -> Settings:
     return tuple(
-        f"{finding.claim.text}: {finding.sentence}"
-        for finding in found
-        if finding.ruling is Ruling.REFUTED
+        (control.name, control.low + shares[i % 2] * (control.high - control.low))
+        for i, control in enumerate(controls)
     )
+
+
+def _told(finding: Finding) -> str:
+    settings = ", ".join(f"{name} = {value:.4g}" for name, value in finding.claim.settings)
+    where = f" (at {settings}, SI)" if settings else ""
+    return f"{finding.claim.text}: {finding.sentence}{where}"

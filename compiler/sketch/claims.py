@@ -14,7 +14,7 @@ from compiler.sketch.fill import curves_of, edge_times
 from compiler.sketch.frame import Frame
 from runtime.arrays import Array
 from runtime.code import Code
-from runtime.program import Claim, Place, Reach, Span
+from runtime.program import Claim, Place, Reach
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.tree import Expr
 from spec_schema.load import Loaded
@@ -34,8 +34,10 @@ FEATURES: Final = {
 
 
 def sketch_claims(design: Design, loaded: Loaded) -> tuple[Claim, ...]:
-    """One claim for each feature, drawn or required, and that there is no other."""
-    over = tuple(Span(name, low, high) for name, (low, high) in design.frame.box.items())
+    """One claim for each feature, drawn or required, and that there is no other.
+
+    Places are expressions of the controls, so the claims hold whatever those are set to.
+    """
 
     def told(
         text: str,
@@ -60,7 +62,7 @@ def sketch_claims(design: Design, loaded: Loaded) -> tuple[Claim, ...]:
             share=None,
             goes_to="",
             called="",
-            over=over,
+            over=(),
             settings=(),
             sketched=True,
             origin=loaded.origin(path),

@@ -97,6 +97,8 @@ def _cross(a: Array, b: Array) -> Array:
 
 def _meet(a: Array, b: Array, c: Array, d: Array) -> bool:
     """Whether the segments ab and cd meet."""
+    if np.any(np.maximum(a, b) < np.minimum(c, d)) or np.any(np.maximum(c, d) < np.minimum(a, b)):
+        return False
     first, second = _cross(b - a, c - a), _cross(b - a, d - a)
     third, fourth = _cross(d - c, a - c), _cross(d - c, b - c)
     return bool(first * second <= 0.0 and third * fourth <= 0.0)
