@@ -127,3 +127,16 @@ def crank() -> Program:
         {"slow": ("rate", "1 rate sub"), "fast": ("rate", "3 rate sub")},
         (("slow", "fast", "angle sin 0.5 sub", {}), ("fast", "slow", "-0.5 angle sin sub", {})),
     )
+
+
+def toggled(turned: float) -> Program:
+    """The same with no gap between the guards: each mode begins where the other one would, too."""
+    height = f"angle {turned!r} sub sin"
+    return switching(
+        (
+            state("angle", -math.pi, math.pi, kind=Kind.PERIODIC),
+            state("rate", 0.0, 4.0),
+        ),
+        {"slow": ("rate", "1 rate sub"), "fast": ("rate", "3 rate sub")},
+        (("slow", "fast", height, {}), ("fast", "slow", f"{height} neg", {})),
+    )

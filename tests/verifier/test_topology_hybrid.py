@@ -21,8 +21,11 @@ from tests.verifier.hybrid_scenes import (
     relay,
     slanted,
     spinning,
+    switching,
     thermostat,
+    toggled,
 )
+from tests.verifier.topology_scenes import state
 from verifier.topology.features import Cycle, PointKind, Stability
 from verifier.topology.hybrid import Hybrid, hybrid_of, leaves_at
 from verifier.topology.hybrid_cycles import find_hybrid_cycles
@@ -174,6 +177,34 @@ def test_a_cycle_round_a_periodic_axis_against_an_independent_integration() -> N
     assert not cycle.doubtful
 
 
+def half_turn(rate: float, goal: float) -> tuple[float, float]:
+    """How long half a turn takes while rate' = goal - rate, and the rate then; closed form."""
+
+    def angle(t: float) -> float:
+        return goal * t + (rate - goal) * (1.0 - math.exp(-t))
+
+    time = brentq(lambda t: angle(t) - math.pi, 0.0, 10.0, xtol=1e-14)
+    return time, goal + (rate - goal) * math.exp(-time)
+
+
+@pytest.mark.parametrize("turned", [0.3, 0.0, math.pi, math.pi - 1e-9])
+def test_modes_without_a_gap_between_them_have_one_cycle_also_on_the_seam(turned: float) -> None:
+    def turn(rate: float) -> tuple[float, float]:
+        fast, middle = half_turn(rate, 3.0)
+        slow, last = half_turn(middle, 1.0)
+        return fast + slow, last
+
+    rate = brentq(lambda r: turn(r)[1] - r, 0.5, 3.5, xtol=1e-14)
+
+    [cycle] = cycles(toggled(turned))
+
+    assert cycle.period == pytest.approx(turn(rate)[0], rel=1e-9)
+    slope = (turn(rate + 1e-5)[1] - turn(rate - 1e-5)[1]) / 2e-5
+    for [value] in (cycle.multipliers, cycle.cross_checked):
+        assert value == pytest.approx(slope, rel=1e-5)
+    assert (cycle.turns, cycle.doubtful) == ((1, 0), False)
+
+
 @given(st.floats(0.3, 1.2), st.floats(1.4, 2.7))
 @settings(max_examples=10, deadline=None)
 def test_a_thermostat_swings_between_its_limits(low: float, high: float) -> None:
@@ -258,6 +289,22 @@ def test_nearly_everything_comes_to_the_patrol(program: Program) -> None:
     assert attractor.share > 0.97
     # What starts near the edge and goes fast towards it can't be stopped in time.
     assert attractor.share + basins.leaves == pytest.approx(1.0)
+
+
+def test_cells_fill_the_domain_also_where_more_are_asked_for_than_are_made() -> None:
+    program = switching(
+        (state("x", 0.0, 3.0),),
+        {"off": ("1 x sub",), "on": ("x neg",)},
+        (("off", "on", "x 2 sub", {}),),
+    )
+
+    basins = portrait(program, detail=Detail(basins=10_000, cycles=False)).basins
+
+    assert basins is not None
+    [centres] = basins.centres
+    assert centres[0] == pytest.approx(3.0 - centres[-1])
+    [rests, decays] = basins.attractors
+    assert (rests.share, decays.share) == pytest.approx((2.0 / 3.0, 1.0 / 3.0), abs=1e-3)
 
 
 def test_no_modes_no_hybrid() -> None:

@@ -90,7 +90,7 @@ def find_basins(
     goals = _goals(fixed_points, cycles, traps, tubes)
     if not goals:
         return None
-    centres = _centres(view, min(cells, MOST_CELLS[len(view.axes)]))
+    centres = centres_of(view, min(cells, MOST_CELLS[len(view.axes)]))
     starts = np.stack(np.meshgrid(*centres, indexing="ij"), axis=-1).reshape(-1, len(view.axes))
     labels, lanes = _followed(view, goals, traps, tubes, starts)
     _label_converging(view, goals, fixed_points, labels, lanes)
@@ -117,7 +117,8 @@ def _goals(
     return (*points, *closed)
 
 
-def _centres(view: Slice, count: int) -> tuple[Array, ...]:
+def centres_of(view: Slice, count: int) -> tuple[Array, ...]:
+    """Per axis the centres of `count` cells that fill it."""
     shares = (np.arange(count) + 0.5) / count
     return tuple(frozen(axis.low + shares * axis.width) for axis in view.axes)
 

@@ -9,10 +9,10 @@ from typing import Final, final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from runtime.arrays import Array, Booleans, Integers, frozen
+from runtime.arrays import Array, Booleans, Integers
 from runtime.integrators import ENDINGS
 from runtime.rollout import Ending
-from verifier.topology.basins import LEAVES, MOST_CELLS, OPEN
+from verifier.topology.basins import LEAVES, MOST_CELLS, OPEN, centres_of
 from verifier.topology.capture import STABLE
 from verifier.topology.features import Attractor, Basins, Cycle, FixedPoint
 from verifier.topology.hybrid import Hybrid, followed, on_axes, points_in
@@ -57,8 +57,7 @@ def find_hybrid_basins(
     if cells < 1 or not goals or not np.isfinite(hybrid.tempo):
         return None
     view = hybrid.view
-    shares = (np.arange(min(cells, MOST_CELLS[len(view.axes)])) + 0.5) / cells
-    centres = tuple(frozen(axis.low + shares * axis.width) for axis in view.axes)
+    centres = centres_of(view, min(cells, MOST_CELLS[len(view.axes)]))
     starts = np.stack(np.meshgrid(*centres, indexing="ij"), axis=-1).reshape(-1, len(view.axes))
     labels = _labelled(hybrid, goals, starts)
     share = [float(np.mean(labels == k)) for k in range(len(goals))]

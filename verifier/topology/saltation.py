@@ -17,6 +17,7 @@ from runtime.machine import evaluate
 from runtime.program import Guard
 from runtime.rollout import Switches
 from verifier.topology.hybrid import EXACT, Hybrid, conditions, followed, on_axes, points_in
+from verifier.topology.slices import shortest
 
 NUDGE: Final = 1e-5
 """How far points are displaced, in widths."""
@@ -65,14 +66,14 @@ def _smooth(hybrid: Hybrid, state: Array, duration: float) -> Array:
     ends = followed(
         hybrid, _around(hybrid, state), np.array([0.0, duration]), EXACT, in_one_mode(hybrid.flow)
     )
-    return _slopes(on_axes(hybrid, ends.states[:, -1]) / hybrid.view.width)
+    return _slopes_of_points(hybrid, on_axes(hybrid, ends.states[:, -1]))
 
 
 def _saltation(hybrid: Hybrid, guard: Guard, before: Array, after: Array) -> Array:
     width, u = hybrid.view.width, hybrid.view.u
     near = _around(hybrid, before)
     gradient = _slopes(conditions(hybrid, (guard,), near))[0]
-    reset = _slopes(_reset(hybrid, guard, near) / width)
+    reset = _slopes_of_points(hybrid, _reset(hybrid, guard, near))
     inward = on_axes(hybrid, rates(hybrid.flow, before, u)) / width
     outward = on_axes(hybrid, rates(hybrid.flow, after, u)) / width
     return np.asarray(reset + np.outer(outward - reset @ inward, gradient) / (gradient @ inward))
@@ -95,6 +96,13 @@ def _around(hybrid: Hybrid, state: Array) -> Array:
     nudges = NUDGE * np.diag(hybrid.view.width)
     at = on_axes(hybrid, state)
     return points_in(hybrid, np.concatenate([at + nudges, at - nudges]), mode)
+
+
+def _slopes_of_points(hybrid: Hybrid, points: Array) -> Array:
+    """Derivatives (m, m), in widths, of points (2 m, m), which may lie on both sides of a seam."""
+    up, down = np.split(points, 2)
+    short = shortest(hybrid.view, up - down) / hybrid.view.width
+    return np.asarray(short.T / (2.0 * NUDGE))
 
 
 def _slopes(values: Array) -> Array:
