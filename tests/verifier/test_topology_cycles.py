@@ -192,6 +192,22 @@ def test_three_nested_cycles_are_all_found() -> None:
         assert math.log(cycle.multipliers[0].real) == pytest.approx(logarithm, rel=1e-6)
 
 
+def test_cycles_are_found_where_the_field_is_a_million_times_slower_than_at_its_corners() -> None:
+    """The median speed is that of the outskirts, where a polynomial of ninth order is huge."""
+    squares = (0.01, 0.04, 0.12, 0.2)
+    product = " ".join(f"{s} R sub" for s in squares) + " mul mul mul 90 mul"
+
+    found = cycles_of(turning(product), ORIGIN)
+
+    wanted = []
+    for s in squares:
+        slope = -90.0 * math.prod(other - s for other in squares if other != s)
+        wanted.append((math.sqrt(s), math.exp(4.0 * math.pi * s * slope)))
+    radii = [float(np.hypot(*cycle.points[0])) for cycle in found]
+    values = [cycle.multipliers[0].real for cycle in found]
+    assert sorted(zip(radii, values, strict=True)) == [pytest.approx(pair) for pair in wanted]
+
+
 @pytest.mark.parametrize("side", ["R 1 sub 2 pow neg", "R 1 sub 2 pow"])
 def test_a_cycle_that_attracts_from_one_side_only_is_semi_stable(side: str) -> None:
     (cycle,) = cycles_of(turning(side), ORIGIN)

@@ -296,6 +296,17 @@ def test_steps_around_a_circle_are_taken_the_short_way() -> None:
     assert len(proof_of(turning).zeros) == 0
 
 
+@pytest.mark.parametrize("distance", [1e-2, 1e-3, 2.5e-4, 1e-5, 1e-7])
+def test_zeros_close_to_a_fold_are_as_sharp_as_others(distance: float) -> None:
+    # x' = a - x²: rounding of a moves the zeros by eps / (2 sqrt(a)).
+    program = behavior("fold", (state("x", -2.0, 2.0),), (f"{distance!r} x x mul sub",))
+
+    proof = proof_of(program)
+
+    assert np.ravel(proof.zeros) == pytest.approx([-math.sqrt(distance), math.sqrt(distance)])
+    assert np.all(proof.radii <= 1e-15 / math.sqrt(distance))
+
+
 def test_for_an_interval_of_controls_each_value_has_its_zero_within_the_radius() -> None:
     # x' = a - x², y' = -y: zeros at ±sqrt(a).
     program = behavior(
@@ -317,6 +328,34 @@ def test_for_an_interval_of_controls_each_value_has_its_zero_within_the_radius()
     across = prove(view, np.array([[-0.1], [0.1]]))
     assert not across.complete
     assert prove(view, np.array([[-1.0], [-0.1]])).complete
+
+
+def test_a_zero_that_leaves_the_domain_as_controls_change_is_undecided() -> None:
+    line = behavior("line", (state("x", -2.0, 2.0),), ("x a sub",), (control("a", 0.0, 4.0, 1.0),))
+    view = cut(line, None, {})
+
+    for low, high, count, complete in (
+        (1.0, 2.0, 1, True),
+        (1.9, 2.1, 0, False),
+        (2.1, 2.2, 0, True),
+    ):
+        found = prove(view, np.array([[low], [high]]))
+
+        assert (len(found.zeros), found.complete) == (count, complete)
+        assert len(found.undecided) == (not complete)
+
+
+@pytest.mark.parametrize("second", [(), ("y neg",)])
+def test_a_zero_that_a_jump_on_the_seam_skips_is_none(second: tuple[str, ...]) -> None:
+    """At the upper end of the circle the rate would be 0; but that is the lower end, where it is
+    2 pi."""
+    states = (state("angle", -math.pi, math.pi, kind=Kind.PERIODIC), state("y", -1.0, 1.0))
+    skipped = behavior("skipped", states[: 1 + len(second)], (f"{math.pi!r} angle sub", *second))
+    kept = behavior("kept", states[: 1 + len(second)], (f"{math.pi!r} angle add", *second))
+
+    for program, count in ((skipped, 0), (kept, 1)):
+        found = prove(cut(program, None, {}))
+        assert (len(found.zeros), found.complete) == (count, True)
 
 
 def test_controls_may_weigh_and_span_tables() -> None:

@@ -15,8 +15,11 @@ from verifier.topology.slices import Slice, rates_at, shortest, states_at
 MOST_STEPS: Final = 10_000
 """A path that needs more steps chatters along a jump of the field."""
 
-LASTING: Final = tuple(2.0**k for k in range(12))
-"""Durations, in paces, for which paths are followed on and on until they show what they do."""
+LASTING: Final = tuple(2.0**k for k in range(22))
+"""Durations, in paces, for which paths are followed on and on until they show what they do.
+
+Polynomials of high order are a million times faster at the domain's corners than amid it.
+"""
 
 STUCK: Final = 1e-7
 """A path that moved less than this share of the widths in such a duration has come to rest."""

@@ -77,11 +77,17 @@ class Proof:
     about: str
 
 
-def prove(view: Slice, controls: Array | None = None, source: Source = Source.TABLES) -> Proof:
+def prove(
+    view: Slice,
+    controls: Array | None = None,
+    source: Source = Source.TABLES,
+    smallest: float = SMALLEST,
+) -> Proof:
     """Every zero of the slice's field, with proof, or the boxes in which that was not possible.
 
     controls: (2, p) lowest and highest values; without them those of the slice. For an interval of
     controls "a zero" is one zero for each value of the controls, all of them within its radius.
+    smallest: boxes of this share of the domain are not halved any more.
 
     Raises:
         ValueError: the field has no formula, and `source` asks for it.
@@ -89,7 +95,7 @@ def prove(view: Slice, controls: Array | None = None, source: Source = Source.TA
     box = np.stack([view.u, view.u]) if controls is None else np.asarray(controls)
     names = tuple(axis.name for axis in view.axes)
     field = enclosure_of(view.program, names, view.x, box, source)
-    search = _searched(view, field)
+    search = _searched(view, field, smallest)
     formula = source is Source.FORMULA or not view.program.field.tables
     return _reported(view, search, "the formula" if formula else "the tables")
 
@@ -101,6 +107,7 @@ class _Search:
 
     field: Enclosure
     width: Array
+    smallest: float
     low: Array
     high: Array
     regions: Regions
@@ -108,13 +115,12 @@ class _Search:
     work: int
 
 
-def _searched(view: Slice, field: Enclosure) -> _Search:
+def _searched(view: Slice, field: Enclosure, smallest: float) -> _Search:
     low, high = _start(view, field)
     m = low.shape[1]
     nothing = np.empty((0, m))
-    search = _Search(
-        field, view.width, low, high, Regions(nothing, nothing, nothing, nothing), (), 0
-    )
+    none = Regions(nothing, nothing, nothing, nothing)
+    search = _Search(field, view.width, smallest, low, high, none, (), 0)
     search = _without_far_ones(search)
     before, grown = len(search.low), 0
     while len(search.low):
@@ -199,25 +205,25 @@ def _halved(search: _Search, J: Interval) -> _Search:
     inside = search.regions.contain(search.low, search.high)
     low, high = search.low[~inside], search.high[~inside]
     share = (high - low) / search.width
-    small = np.all(share <= SMALLEST, axis=-1)
+    small = np.all(share <= search.smallest, axis=-1)
     stuck = search.stuck
     if np.any(small):
         stuck = (*stuck, (low[small], high[small]))
     steep = np.maximum(np.abs(J.low), np.abs(J.high))[~inside]
     low, high, steep = low[~small], high[~small], steep[~small]
-    halves = _halves(low, high, _worst_axes(high - low, steep, search.width))
+    halves = _halves(low, high, _worst_axes(search, high - low, steep))
     return replace(search, low=halves[0], high=halves[1], stuck=stuck)
 
 
-def _worst_axes(size: Array, steep: Array, width: Array) -> Booleans:
+def _worst_axes(search: _Search, size: Array, steep: Array) -> Booleans:
     """Up to two axes (B, m) along which a box lets the rates vary most, or is longest."""
     with np.errstate(all="ignore"):
         smear = steep * size[:, None, :]
         smear = smear / smear.max(axis=-1, keepdims=True)
         weight = np.nan_to_num(smear, nan=0.0).max(axis=1)
-    share = size / width
+    share = size / search.width
     longest = share.max(axis=-1, keepdims=True)
-    weight = np.where(share <= SMALLEST, 0.0, np.maximum(weight, 1e-3) * (share > 0.02 * longest))
+    weight = np.where(share <= search.smallest, 0.0, np.maximum(weight, 1e-3) * (share > 0.02 * longest))
     rank = np.argsort(np.argsort(-weight, axis=-1, kind="stable"), axis=-1)
     best = weight.max(axis=-1, keepdims=True)
     return np.asarray((rank < 2) & (weight >= 0.25 * best) & (weight > 0.0))
@@ -286,7 +292,9 @@ def _stopped(search: _Search) -> _Search:
 def _reported(view: Slice, search: _Search, about: str) -> Proof:
     """What the search shows of the domain."""
     regions = search.regions
-    rows, doubtful = each_once(view, regions, in_domain(view, regions))
+    inside, partly = _in_domain(view, search)
+    rows, doubtful = each_once(view, regions, inside)
+    doubtful += partly
     regions = rows_of(regions, rows)
     zeros, radii = named(view, regions)
     order = [int(i) for i in np.lexsort(zeros.T[::-1])]
@@ -309,6 +317,31 @@ def _reported(view: Slice, search: _Search, about: str) -> Proof:
         complete=not boxes,
         about=about,
     )
+
+
+def _in_domain(view: Slice, search: _Search) -> tuple[list[int], list[int]]:
+    """Which zeros lie in the domain for certain, and those of which that is open.
+
+    A zero moves across the border where the controls are intervals. One on the upper end of a seam
+    is one only if the rates are zero at the lower end, too: the field may jump there.
+    """
+    regions = search.regions
+    slack = ROUNDING * view.width
+    top = view.low + view.width
+    within = (regions.low >= view.low - slack) & (regions.high <= top + slack)
+    sure = np.all(within | view.periodic, axis=-1)
+    dropped = np.zeros(len(sure), dtype=np.bool_)
+    for j in np.flatnonzero(view.periodic):
+        at_end = regions.high[:, j] >= top[j] - slack[j]
+        turn = np.zeros(len(top))
+        turn[j] = view.width[j]
+        spare = np.where(turn > 0.0, slack, 0.0)
+        low, high = regions.low - turn - spare, regions.high - turn + spare
+        jumps = at_end & ~_may_be_zero(changes(search.field, low, high))
+        dropped |= jumps & (regions.low[:, j] >= top[j] - slack[j])
+        sure &= ~jumps
+    rows = in_domain(view, regions)
+    return [i for i in rows if sure[i]], [i for i in rows if not sure[i] and not dropped[i]]
 
 
 def _outside(regions: Regions, boxes: list[tuple[Array, Array]], m: int) -> tuple[Array, Array]:
