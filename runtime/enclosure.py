@@ -1,11 +1,12 @@
 """What a program's rates, and their derivatives, may be over boxes of its states and controls.
 
-m: axes, the states that a box spans; N: boxes. Everything else stands still, but controls may be
-intervals. The bounds hold for real arithmetic; see `runtime.intervals` and `runtime.table_bounds`.
+m: axes, the states that a box spans; N: boxes; d: controls that are intervals. Everything else
+stands still. The bounds hold for real arithmetic; see `runtime.intervals` and
+`runtime.table_bounds`.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, final
 
 import numpy as np
@@ -15,7 +16,7 @@ from runtime.code import Code
 from runtime.flow import Source, rate_of
 from runtime.intervals import Interval, add, exactly, multiply, subtract
 from runtime.jet_machine import run_over_boxes
-from runtime.jets import SURE, Jet, constant, jet_sum, unbounded
+from runtime.jets import Jet, constant, jet_sum, unbounded
 from runtime.program import Kind, Program, State
 from runtime.table_bounds import Columns, column_jets, columns_of, combined, held_at
 from runtime.tape import Sum
@@ -33,11 +34,13 @@ class Block:
 
     columns: first one per axis (its weighed sum), then those whose weights are uncertain.
     spread: (m, k) how far the weight of each of the latter may be from what was taken.
+    drift: (m, k, d) bounds of the derivatives of these weights by the controls that are intervals.
     arguments: names of the register or of coordinates, one per axis of the table that moves.
     """
 
     columns: Columns
     spread: Array
+    drift: Interval
     arguments: tuple[str, ...]
 
 
@@ -46,13 +49,15 @@ class Block:
 class Enclosure:
     """A field to be bounded over boxes of the states `axes`.
 
-    register: all that does not span a box. blocks: the parts through tables, codes: the others,
-    None where there is none. coordinates: codes of what tables stand over beside states.
-    periods: of the axes, 0 for those that do not wrap. work: the cost of one box, roughly.
+    register: all that does not span a box. controls: those that are intervals. blocks: the parts
+    through tables, codes: the others, None where there is none. coordinates: codes of what tables
+    stand over beside states. periods: of the axes, 0 for those that do not wrap. work: the cost of
+    one box, roughly.
     """
 
     axes: tuple[str, ...]
     register: Register
+    controls: tuple[str, ...]
     blocks: tuple[Block, ...]
     codes: tuple[Code | None, ...]
     coordinates: tuple[tuple[str, Code], ...]
@@ -74,10 +79,15 @@ def enclosure_of(
         ValueError: the field has no formula, and `source` asks for it.
     """
     register = _register(program, axes, x, controls)
+    intervals = tuple(
+        control.name
+        for control, low, high in zip(program.controls, *controls, strict=True)
+        if low < high
+    )
     index = {state.name: i for i, state in enumerate(program.states)}
     results = [rate_of(program, index[name], source) for name in axes]
     tables = sorted({t for r in results if isinstance(r, Sum) for _, t, _ in r.parts if t >= 0})
-    blocks = tuple(_block(program, results, table, register) for table in tables)
+    blocks = tuple(_block(program, results, table, register, intervals) for table in tables)
     used = {name for block in blocks for name in block.arguments}
     codes = tuple(_code(result) for result in results)
     coordinates = [(c.name, c.code) for c in program.field.coordinates if c.name in used]
@@ -86,6 +96,7 @@ def enclosure_of(
     return Enclosure(
         axes=axes,
         register=register,
+        controls=intervals,
         blocks=blocks,
         codes=codes,
         coordinates=tuple(coordinates),
@@ -101,7 +112,7 @@ def changes(field: Enclosure, low: Array, high: Array, *, coarse: bool = False) 
     Of a map: of how far a step goes, the short way round where an axis is periodic; NaN where the
     field does not exist. coarse: many times faster through tables, and wider.
     """
-    jets = _jets(field, low, high, moves=False, coarse=coarse)
+    jets = _jets(field, low, high, (), coarse=coarse)
     lower, upper = np.empty(low.shape), np.empty(low.shape)
     for i, jet in enumerate(jets):
         lower[:, i], upper[:, i] = jet.value.low, jet.value.high
@@ -113,15 +124,25 @@ def slopes(field: Enclosure, low: Array, high: Array) -> Interval:
 
     All numbers where the field may jump in the box, or not exist somewhere in it.
     """
-    jets = _jets(field, low, high, moves=True, coarse=False)
-    m, n = len(field.axes), len(low)
-    lower, upper = np.zeros((n, m, m)), np.zeros((n, m, m))
+    return _gradients(field, low, high, field.axes)
+
+
+def drifts(field: Enclosure, low: Array, high: Array) -> Interval:
+    """Bounds (N, m, d) of the derivatives of `changes` by the controls that are intervals."""
+    return _gradients(field, low, high, field.controls)
+
+
+def _gradients(field: Enclosure, low: Array, high: Array, moves: tuple[str, ...]) -> Interval:
+    """Bounds of the derivatives of `changes` by what `moves`, along the last axis."""
+    jets = _jets(field, low, high, moves, coarse=False)
+    m, n, d = len(field.axes), len(low), len(moves)
+    lower, upper = np.zeros((n, m, d)), np.zeros((n, m, d))
     for i, jet in enumerate(jets):
         if jet.slopes is None:
-            entry = exactly(np.zeros((m, n)))
+            entry = exactly(np.zeros((d, n)))
         else:
             entry = Interval(
-                *(np.broadcast_to(e, (m, n)) for e in (jet.slopes.low, jet.slopes.high))
+                *(np.broadcast_to(e, (d, n)) for e in (jet.slopes.low, jet.slopes.high))
             )
         lost = (
             ~np.broadcast_to(jet.sure, n) | np.isnan(jet.value.low) | ~_is_one_turn(field, i, jet)
@@ -131,23 +152,36 @@ def slopes(field: Enclosure, low: Array, high: Array) -> Interval:
     return Interval(lower, upper)
 
 
-def _jets(field: Enclosure, low: Array, high: Array, *, moves: bool, coarse: bool) -> list[Jet]:
-    """The change along each axis over boxes; values alone where nothing `moves`."""
+def _jets(
+    field: Enclosure, low: Array, high: Array, moves: tuple[str, ...], *, coarse: bool
+) -> list[Jet]:
+    """The change along each axis over boxes, with its derivatives by what `moves`, if anything."""
     n, m = low.shape
     register = dict(field.register)
     for j, name in enumerate(field.axes):
-        unit = exactly(np.eye(m)[:, j : j + 1]) if moves else None
-        register[name] = Jet(Interval(low[:, j], high[:, j]), unit, SURE)
+        register[name] = constant(Interval(low[:, j], high[:, j]))
+    register |= _moving(register, moves)
     names = [name for name, _ in field.coordinates]
     extra = run_over_boxes([code for _, code in field.coordinates], register)
     register |= dict(zip(names, extra, strict=True))
     totals = _code_jets(field, register)
+    drifting = bool(moves) and moves == field.controls
     for block in field.blocks:
-        for i, jet in enumerate(_block_jets(block, register, m, n, coarse=coarse)):
+        parts = _block_jets(block, register, m, n, drifting=drifting, coarse=coarse)
+        for i, jet in enumerate(parts):
             before = totals[i]
             totals[i] = jet if before is None else jet_sum(before, jet)
     known = [constant(exactly(0.0)) if jet is None else jet for jet in totals]
     return [_displacement(field, j, jet, register) for j, jet in enumerate(known)]
+
+
+def _moving(register: Register, moves: tuple[str, ...]) -> Register:
+    """The entries that move, each with its own direction."""
+    units = np.eye(len(moves))[:, :, None]
+    return {
+        name: replace(register[name], slopes=exactly(unit))
+        for name, unit in zip(moves, units, strict=True)
+    }
 
 
 def _code_jets(field: Enclosure, register: Mapping[str, Jet]) -> list[Jet | None]:
@@ -208,6 +242,7 @@ def _block(
     results: list[Code | Sum],
     table: int,
     register: Register,
+    intervals: tuple[str, ...],
 ) -> Block:
     columns = columns_of(program.field.tables[table])
     moving: list[str] = []
@@ -217,7 +252,8 @@ def _block(
             columns = held_at(columns, len(moving), float(jet.value.low))
         else:
             moving.append(axis.name)
-    factors = _factors(results, table, len(columns.error), register)
+    known = {**register, **_moving(register, intervals)}
+    factors, drift = _factors(results, table, len(columns.error), known, len(intervals))
     width = factors.high - factors.low
     size = np.maximum(np.abs(factors.low), np.abs(factors.high))
     spread = np.where(width > 0.0, 0.5 * width + 2.0**-50 * size, 0.0)
@@ -229,12 +265,17 @@ def _block(
         np.concatenate([sums.coefficients, columns.coefficients[..., uncertain]], axis=-1),
         np.concatenate([sums.error, columns.error[uncertain]]),
     )
-    return Block(both, spread[:, uncertain], tuple(moving))
+    ahead = Interval(drift.low[:, uncertain], drift.high[:, uncertain])
+    return Block(both, spread[:, uncertain], ahead, tuple(moving))
 
 
-def _factors(results: list[Code | Sum], table: int, columns: int, register: Register) -> Interval:
-    """The weight (m, k) of each column of a table in each rate."""
-    low, high = np.zeros((len(results), columns)), np.zeros((len(results), columns))
+def _factors(
+    results: list[Code | Sum], table: int, columns: int, register: Mapping[str, Jet], d: int
+) -> tuple[Interval, Interval]:
+    """The weight (m, k) of each column of a table in each rate, and its derivatives (m, k, d)."""
+    shape = (len(results), columns)
+    low, high = np.zeros(shape), np.zeros(shape)
+    falls, rises = np.zeros((*shape, d)), np.zeros((*shape, d))
     for i, result in enumerate(results):
         if not isinstance(result, Sum):
             continue
@@ -245,13 +286,18 @@ def _factors(results: list[Code | Sum], table: int, columns: int, register: Regi
                 first = low[i, column] == 0.0 == high[i, column]
                 chosen_ = jet.value if first else total
                 low[i, column], high[i, column] = chosen_.low, chosen_.high
-    return Interval(low, high)
+                if jet.slopes is not None:
+                    own = unbounded(jet.slopes, ~jet.sure | np.isnan(jet.slopes.low))
+                    own = Interval(*(np.broadcast_to(e, (d, 1))[:, 0] for e in (own.low, own.high)))
+                    ahead = add(Interval(falls[i, column], rises[i, column]), own)
+                    falls[i, column], rises[i, column] = ahead.low, ahead.high
+    return Interval(low, high), Interval(falls, rises)
 
 
 def _block_jets(
-    block: Block, register: Mapping[str, Jet], m: int, n: int, *, coarse: bool
+    block: Block, register: Mapping[str, Jet], m: int, n: int, *, drifting: bool, coarse: bool
 ) -> list[Jet]:
-    """The part of each rate that a table gives."""
+    """The part of each rate that a table gives. drifting: the controls move, not the axes."""
     arguments = [register[name] for name in block.arguments]
     jets = column_jets(block.columns, arguments, n, coarse=coarse)
     sums, others = jets[:m], jets[m:]
@@ -262,6 +308,10 @@ def _block_jets(
                 weight = Interval(np.asarray(-radius), np.asarray(radius))
                 ahead = None if jet.slopes is None else multiply(weight, jet.slopes)
                 sums[i] = jet_sum(sums[i], Jet(multiply(weight, jet.value), ahead, jet.sure))
+            if radius > 0.0 and drifting:
+                rise = Interval(block.drift.low[i, k][:, None], block.drift.high[i, k][:, None])
+                by_weight = multiply(rise, jet.value)
+                sums[i] = jet_sum(sums[i], Jet(exactly(0.0), by_weight, jet.sure))
     return sums
 
 

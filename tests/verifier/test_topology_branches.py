@@ -39,7 +39,7 @@ def test_branches_follow_the_roots() -> None:
     )
 
     for branch, sign in ((stable, 1.0), (unstable, -1.0)):
-        assert branch.points[:, 0] == pytest.approx(sign * np.sqrt(branch.values - 0.2), abs=0.02)
+        assert branch.points[:, 0] == pytest.approx(sign * np.sqrt(branch.values - 0.2), abs=1e-7)
         assert branch.values[0] == pytest.approx(0.2, abs=1e-5)
         assert branch.values[-1] == 1.0
         assert np.all(np.diff(branch.values) > 0.0)

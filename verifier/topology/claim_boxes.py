@@ -13,17 +13,18 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array
-from runtime.intervals import Interval, add, exactly, multiply, square, subtract
+from runtime.intervals import Interval, add, common, exactly, multiply, square, subtract
 from runtime.jet_machine import run_over_boxes
-from runtime.jets import Jet, constant
+from runtime.jets import SURE, Jet, constant
 from runtime.program import Claim, Program
 from verifier.topology.claim_at import BASIN, Outcome, Scenes
 from verifier.topology.claim_members import POINTS, Fit
 from verifier.topology.features import PointKind
 from verifier.topology.findings import Settings
+from verifier.topology.proof import SMALLEST as STATES_FINEST
 from verifier.topology.proof import Proof, prove
 from verifier.topology.slices import Slice, cut
-from verifier.topology.zero_bounds import zero_within
+from verifier.topology.zero_bounds import Moving, zero_within
 
 PIECES: Final = {1: 16, 2: 8, 3: 4, 4: 3}
 """Pieces per control that a domain is cut into at first, by the number of controls; else 2.
@@ -36,6 +37,10 @@ WORK: Final = 400
 
 MOST_CUTS: Final = 64
 """Into so many pieces a box of controls is cut at most to see where a zero is."""
+
+FINEST: Final = 2.0**-10
+"""Where nothing is decided in boxes of this share of the states' domain, the controls are halved:
+within such a box they move the zeros further."""
 
 SMALLEST: Final = 2.0**-14
 """Boxes of this share of the claim's domain are not halved any more."""
@@ -160,7 +165,8 @@ class _Prover:
         columns = [control.name for control in self._program.controls]
         for name, low, high in zip(names, box.low, box.high, strict=True):
             self._controls[:, columns.index(name)] = low, high
-        self._proof: Proof = prove(self._view, self._controls)
+        finest = FINEST if claim.over else STATES_FINEST
+        self._proof: Proof = prove(self._view, self._controls, smallest=finest)
         self.about = self._proof.about
         self.work = 1 if self._proof.complete else 10
 
@@ -234,28 +240,32 @@ class _Prover:
         fits: set[Fit] = set()
         for _ in range(MOST_CUTS):
             controls, low, high = waiting.popleft()
-            fit = self._placed(claim, controls, low, high)
+            moving = zero_within(self._view, controls, low, high)
+            fit = self._placed(claim, controls, moving)
             if fit is Fit.MAYBE and not self._claim.over:
                 return fit
             if fit is Fit.MAYBE:
-                for half in self._cut(controls):
-                    waiting.append((half, *zero_within(self._view, half, low, high)))
+                low, high = moving.bounds.low, moving.bounds.high
+                waiting.extend((half, low, high) for half in self._cut(controls))
             else:
                 fits.add(fit)
             if len(fits) > 1 or not waiting:
                 break
         return fits.pop() if len(fits) == 1 and not waiting else Fit.MAYBE
 
-    def _placed(self, claim: Claim, controls: Array, low: Array, high: Array) -> Fit:
-        """Whether a zero between low and high (m,) is at the claim's place."""
+    def _placed(self, claim: Claim, controls: Array, moving: Moving) -> Fit:
+        """Whether a zero is at the claim's place, wherever both go with the controls."""
         fit = Fit.YES
         names = [axis.name for axis in self._view.axes]
-        register = self._register(controls)
-        jets = run_over_boxes([place.at for place in claim.places], register)
-        for place, jet in zip(claim.places, jets, strict=True):
+        codes = [place.at for place in claim.places]
+        jets = run_over_boxes(codes, self._register(controls, moving.controls))
+        middle = 0.5 * controls[0] + 0.5 * controls[1]
+        middle[[c.name in moving.controls for c in self._program.controls]] = moving.middle
+        still = run_over_boxes(codes, self._register(np.stack([middle, middle]), ()))
+        for place, jet, there in zip(claim.places, jets, still, strict=True):
             j = names.index(place.state)
             axis = self._view.axes[j]
-            off = subtract(Interval(low[j : j + 1], high[j : j + 1]), jet.value)
+            off = _apart(moving, j, jet, there)
             first, last = float(np.min(off.low)), float(np.max(off.high))
             if axis.periodic:
                 turns = axis.width * round(0.5 * (first + last) / axis.width)
@@ -277,14 +287,37 @@ class _Prover:
         lower[1, i] = upper[0, i] = middle
         return [lower, upper]
 
-    def _register(self, controls: Array) -> dict[str, Jet]:
-        lows, highs = controls
+    def _register(self, controls: Array, moves: tuple[str, ...]) -> dict[str, Jet]:
+        """The controls between (2, p) low and high, and the constants; `moves` have slopes."""
+        units = dict(zip(moves, np.eye(len(moves))[:, :, None], strict=True))
         between = {
-            control.name: constant(Interval(np.array([low]), np.array([high])))
-            for control, low, high in zip(self._program.controls, lows, highs, strict=True)
+            control.name: Jet(
+                Interval(np.array([low]), np.array([high])),
+                exactly(units[control.name]) if control.name in units else None,
+                SURE,
+            )
+            for control, low, high in zip(self._program.controls, *controls, strict=True)
         }
-        given = ((c.name, exactly(np.array([c.value]))) for c in self._program.constants)
-        return {**between, **{name: constant(value) for name, value in given}}
+        given = {c.name: constant(exactly(np.array([c.value]))) for c in self._program.constants}
+        return {**between, **given}
+
+
+def _apart(moving: Moving, j: int, place: Jet, middle: Jet) -> Interval:
+    """How far the zero is from a place on axis j: as they are, and by how both move.
+
+    place: for all controls; middle: at the middle of the controls.
+    """
+    bounds = Interval(moving.bounds.low[j : j + 1], moving.bounds.high[j : j + 1])
+    plainly = subtract(bounds, place.value)
+    off = subtract(exactly(moving.centre[j : j + 1]), middle.value)
+    off = add(off, Interval(moving.rest.low[j : j + 1], moving.rest.high[j : j + 1]))
+    for d in range(len(moving.controls)):
+        motion = exactly(moving.slopes[j, d : d + 1])
+        if place.slopes is not None:
+            motion = subtract(motion, Interval(place.slopes.low[d], place.slopes.high[d]))
+        span = Interval(moving.off.low[d : d + 1], moving.off.high[d : d + 1])
+        off = add(off, multiply(motion, span))
+    return common(plainly, off)
 
 
 def _turns(slopes: Interval, i: int) -> bool | None:

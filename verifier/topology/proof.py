@@ -223,7 +223,9 @@ def _worst_axes(search: _Search, size: Array, steep: Array) -> Booleans:
         weight = np.nan_to_num(smear, nan=0.0).max(axis=1)
     share = size / search.width
     longest = share.max(axis=-1, keepdims=True)
-    weight = np.where(share <= search.smallest, 0.0, np.maximum(weight, 1e-3) * (share > 0.02 * longest))
+    weight = np.where(
+        share <= search.smallest, 0.0, np.maximum(weight, 1e-3) * (share > 0.02 * longest)
+    )
     rank = np.argsort(np.argsort(-weight, axis=-1, kind="stable"), axis=-1)
     best = weight.max(axis=-1, keepdims=True)
     return np.asarray((rank < 2) & (weight >= 0.25 * best) & (weight > 0.0))

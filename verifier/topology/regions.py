@@ -56,8 +56,32 @@ def proved_regions(field: Enclosure, points: Array, radius: Array) -> Regions | 
     if not np.any(ok):
         return None
     narrow = narrowed(found, low, high)
+    small = np.minimum(3.0 * reach + 1e-14 * np.abs(points), inner)
+    narrow = _around(field, points, exact, small, narrow)
     narrow = _tightened(field, *narrow, inverses, ok)
     return Regions(points, np.where(ok[:, None], inner, np.nan), *narrow)
+
+
+def _around(
+    field: Enclosure, points: Array, exact: Interval, radius: Array, known: tuple[Array, Array]
+) -> tuple[Array, Array]:
+    """The boxes `known`, replaced by small ones around the points where these hold a zero, too.
+
+    Near a fold the test for a large box leaves nearly all of it, however often it is contracted:
+    the slope at its far end is a multiple of that at the zero. A zero in a small box, of a radius
+    (B, m) within that of the large one, is the only one of the large box.
+    """
+    low, high = points - radius, points + radius
+    outer = np.nextafter(np.maximum(high - points, points - low), np.inf)
+    inner = np.nextafter(np.minimum(high - points, points - low), 0.0)
+    J = slopes(field, low, high)
+    found = krawczyk(points, outer, exact, J, inverses_of(J))
+    first, last = narrowed(found, low, high)
+    better = is_inside(found, points, inner)[:, None]
+    return (
+        np.where(better, np.maximum(first, known[0]), known[0]),
+        np.where(better, np.minimum(last, known[1]), known[1]),
+    )
 
 
 def _reach(values: Interval, inverses: Array) -> Array:
