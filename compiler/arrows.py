@@ -4,6 +4,8 @@ import numpy as np
 
 from compiler.declare import Declarations
 from compiler.findings import Findings
+from compiler.fitted import Surface, least_squares
+from compiler.quantities import rate_text
 from compiler.ranges import Range, range_of, scales
 from compiler.scattered import SketchError, piecewise_linear, reaches_beyond, thin_plate
 from compiler.tabulate import Sampler
@@ -14,14 +16,22 @@ from spec_schema.field_forms import Arrows
 def arrows_sampler(
     form: Arrows, declared: Declarations, drives: tuple[str, ...], findings: Findings
 ) -> Sampler | None:
-    """The field through the arrows, with a warning where the sketch does not reach."""
+    """The field of the arrows, with a warning where the sketch does not reach.
+
+    A fit leaves a note on how far it is from them.
+    """
     at = frozen([arrow.at for arrow in form.sketch]) * scales(form.over, declared)
     go = frozen([arrow.go for arrow in form.sketch]) * scales(drives, declared)
     ranges = [range_of(name, declared) for name in form.over]
     low, high = frozen([r.low for r in ranges]), frozen([r.high for r in ranges])
     periodic = tuple(span.periodic for span in ranges)
     try:
-        if form.fill == "thin_plate":
+        sample: Sampler
+        if form.fill == "least_squares":
+            weights = np.array([arrow.weight or 1.0 for arrow in form.sketch])
+            sample = least_squares(at, go, weights, low, high, periodic, form.degree)
+            _note_misfits(sample, at, go, drives, declared, findings)
+        elif form.fill == "thin_plate":
             sample = thin_plate(at, go, low, high, periodic)
         else:
             sample = piecewise_linear(*_wrapped(at, go, ranges))
@@ -38,6 +48,31 @@ def arrows_sampler(
             "sketch arrows at the corners of the domain, or shrink the domain",
         )
     return sample
+
+
+def _note_misfits(
+    surface: Surface,
+    at: Array,
+    go: Array,
+    drives: tuple[str, ...],
+    declared: Declarations,
+    findings: Findings,
+) -> None:
+    """How far the fit is from the arrows: on average, and where most."""
+    numbers = len(surface.exponents)
+    findings.note(
+        f"fitted: {len(at)} arrows in least squares by a surface of degree {surface.degree}, "
+        f"{numbers} numbers for each rate"
+    )
+    for i, name in enumerate(drives):
+        unit = declared.variable(name).unit
+        misfit = np.abs(surface(at)[:, i] - go[:, i]) / unit.scale
+        worst = int(misfit.argmax())
+        where = findings.origin(("field", "arrows", "sketch", worst))
+        findings.note(
+            f"fitted {name}: off by {np.sqrt(np.mean(misfit**2)):.3g} {rate_text(unit.text)} on "
+            f"average (rms), at most {misfit[worst]:.3g} at the arrow in {where}"
+        )
 
 
 def _wrapped(at: Array, go: Array, ranges: list[Range]) -> tuple[Array, Array]:

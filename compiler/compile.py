@@ -31,7 +31,7 @@ from compiler.lower_parts import (
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
 from compiler.python_module import ModuleError
 from compiler.settings import Settings
-from compiler.sketch.claims import sketch_claims
+from compiler.sketch.claims import additions, sketch_claims
 from compiler.sketch.design import Design
 from compiler.sketch.fill import CANDIDATES, filled
 from compiler.sketch.frame import SketchRefusedError
@@ -54,10 +54,14 @@ TIGHTENINGS = 3  # how often the tables are made again, finer, for the fidelity 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Compiled:
-    """A program, and the warnings on the way to it."""
+    """A program, and the warnings on the way to it.
+
+    notes: what the compiler chose or added by itself, in sentences.
+    """
 
     program: Program
     warnings: tuple[Diagnostic, ...]
+    notes: tuple[str, ...] = ()
 
 
 def compile_file(path: Path, progress: Progress, judge: Judge | None = None) -> Compiled:
@@ -88,7 +92,7 @@ def compile_loaded(loaded: Loaded, progress: Progress, judge: Judge | None = Non
         program = _tabulated(checked, program, _plan(checked), progress)
     _stop_at_errors(checked)
     warnings = tuple(d for d in checked.findings.diagnostics if d.severity is Severity.WARNING)
-    return Compiled(program, warnings)
+    return Compiled(program, warnings, checked.findings.notes)
 
 
 def _stop_at_errors(checked: Checked) -> None:
@@ -122,6 +126,8 @@ def _sketched(
         _stop_at_errors(checked)
         found = judge(made) if judge is not None else ()
         if not found:
+            for sentence in additions(design, checked.declared):
+                checked.findings.note(sentence)
             return made
         faults = faults or found
     message = f"the filled field does not look as it was drawn: {faults[0]}"

@@ -5,9 +5,13 @@ from collections.abc import Iterator
 from runtime.program import Axis, Field, Kind, Program, State, Table
 
 
-def dump(program: Program) -> str:
-    """The program, line by line; sorted where order has no meaning, numbers in SI."""
-    return "\n".join(_lines(program)) + "\n"
+def dump(program: Program, notes: tuple[str, ...] = ()) -> str:
+    """The program, line by line; sorted where order has no meaning, numbers in SI.
+
+    notes: what the compiler says of it beside (`Compiled.notes`), at the end.
+    """
+    lines = (*_lines(program), *(f"  {note}" for note in notes))
+    return "\n".join(lines) + "\n"
 
 
 def _lines(program: Program) -> Iterator[str]:

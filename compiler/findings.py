@@ -15,6 +15,7 @@ class Findings:
     def __init__(self, loaded: Loaded) -> None:
         self._loaded = loaded
         self._found: list[Diagnostic] = []
+        self._notes: list[str] = []
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -22,9 +23,22 @@ class Findings:
         return tuple(self._found)
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What the compiler chose or added by itself, in sentences."""
+        return tuple(self._notes)
+
+    @property
     def has_errors(self) -> bool:
         """Whether anything found so far stops the compiler."""
         return any(found.severity is Severity.ERROR for found in self._found)
+
+    def note(self, sentence: str) -> None:
+        """Add a sentence on what was chosen or added."""
+        self._notes.append(sentence)
+
+    def origin(self, path: Path) -> str:
+        """`file:line:column` of the key at `path`."""
+        return self._loaded.origin(path)
 
     def error(self, code: str, path: Path, message: str, remedy: str, *, key: bool = False) -> None:
         """Add an error at the value of `path`, or at its key."""

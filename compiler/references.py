@@ -110,7 +110,7 @@ def _check_arrows(
                 findings.error(
                     "S234", (*path, "at"), message, "move it inside, or widen the domain"
                 )
-        if arrow.at in seen:
+        if arrow.at in seen and form.fill != "least_squares":
             findings.error(
                 "S234", (*path, "at"), "an arrow stands here already", "keep one of them"
             )

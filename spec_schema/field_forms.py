@@ -49,6 +49,11 @@ class Arrow(StrictModel):
         "unit per second.",
         examples=[[0.5, 0]],
     )
+    weight: Annotated[Number, Field(gt=0)] | None = Field(
+        default=None,
+        description="How much its squared misfit counts in `fill: least_squares`; without it, 1.",
+        examples=[4],
+    )
 
 
 @final
@@ -64,11 +69,19 @@ class Arrows(StrictModel):
         "driven states in the order in which they are declared.",
         examples=[["x", "y"]],
     )
-    fill: Literal["thin_plate", "linear"] = Field(
+    fill: Literal["thin_plate", "linear", "least_squares"] = Field(
         default="thin_plate",
         description="How the space between the arrows is filled: `thin_plate` bends smoothly "
-        "through all arrows and continues beyond them; `linear` takes the triangle around a point.",
+        "through all arrows and continues beyond them; `linear` takes the triangle around a point; "
+        "`least_squares` is the polynomial nearest to all arrows, for more of them than it takes.",
         examples=["linear"],
+    )
+    degree: Annotated[int, Field(ge=1, le=12)] | None = Field(
+        default=None,
+        description="Of `fill: least_squares`, the degree of the polynomial; along a periodic "
+        "axis, the highest harmonic. Without it, the highest up to 3 that the arrows determine "
+        "well: two arrows for each number.",
+        examples=[2],
     )
     sketch: Annotated[tuple[Arrow, ...], Strict(strict=False), Field(min_length=1)] = Field(
         description="The arrows.", examples=[[{"at": [0, 1], "go": [0.5, 0]}]]
@@ -82,6 +95,7 @@ class Arrows(StrictModel):
     def _mistakes(self) -> Iterator[Mistake]:
         yield from repeated(self.over, "over")
         yield from repeated(self.drives or (), "drives")
+        yield from self._fit_mistakes()
         for index, arrow in enumerate(self.sketch):
             lengths = [("at", arrow.at, "over", self.over), ("go", arrow.go, "drives", self.drives)]
             for key, vector, names_key, names in lengths:
@@ -90,6 +104,19 @@ class Arrows(StrictModel):
                     message = f"{count} for {counted(len(names), 'name')} in '{names_key}'"
                     remedy = f"write one number for each of: {', '.join(names)}"
                     yield Mistake("S115", message, remedy, ("sketch", index, key))
+
+    def _fit_mistakes(self) -> Iterator[Mistake]:
+        """What only curve fitting reads, beside another fill."""
+        if self.fill == "least_squares":
+            return
+        remedy = "write 'fill: least_squares', or remove it"
+        if self.degree is not None:
+            message = f"'fill: {self.fill}' has no degree: it goes through all arrows"
+            yield Mistake("S234", message, remedy, ("degree",), on_key=True)
+        for index, arrow in enumerate(self.sketch):
+            if arrow.weight is not None:
+                message = f"'fill: {self.fill}' weighs no arrows: it goes through all of them"
+                yield Mistake("S234", message, remedy, ("sketch", index, "weight"), on_key=True)
 
 
 @final

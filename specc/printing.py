@@ -4,17 +4,19 @@ import hashlib
 import math
 from pathlib import Path
 
+from compiler.compile import Compiled
 from compiler.quantities import rate_text
 from runtime.arrays import Array
 from runtime.program import Kind, Program, Table, Unit
 from runtime.rollout import Ending, Rollout
 
 
-def compile_record(program: Program, path: Path, artifact: bytes) -> dict[str, object]:
+def compile_record(compiled: Compiled, path: Path, artifact: bytes) -> dict[str, object]:
     """What `specc compile --format json` prints: a row for each table and rate that it serves.
 
     Bounds and tolerances are of the whole rate, in the user's unit per second.
     """
+    program = compiled.program
     field = program.field
     scale = {state.name: state.unit.scale for state in program.states}
     rows: list[dict[str, object]] = []
@@ -34,11 +36,12 @@ def compile_record(program: Program, path: Path, artifact: bytes) -> dict[str, o
                 }
             )
     digest = hashlib.sha256(artifact).hexdigest()
-    return {"artifact": str(path), "sha256": digest, "tables": rows}
+    return {"artifact": str(path), "sha256": digest, "tables": rows, "notes": list(compiled.notes)}
 
 
-def compile_summary(program: Program) -> str:
-    """What the compiler chose, and how good it is."""
+def compile_summary(compiled: Compiled) -> str:
+    """What the compiler chose and added, and how good it is."""
+    program = compiled.program
     field = program.field
     lines = [f"{program.name}: {field.form} field of {', '.join(field.driven)}"]
     lines += [f"  table over {_table(table)}" for table in field.tables]
@@ -52,6 +55,7 @@ def compile_summary(program: Program) -> str:
             f"  {name}: off by at most {bound.measured / scale:.2e} {unit} "
             f"(allowed {bound.tolerance / scale:.2e}; measured on {bound.points:,} points)"
         )
+    lines += [f"  {note}" for note in compiled.notes]
     written = sum(not claim.sketched for claim in program.claims)
     if written:
         claims = f"{written} claim{'' if written == 1 else 's'}"

@@ -5,8 +5,9 @@ from typing import Final
 
 import numpy as np
 
+from compiler.declare import Declarations
 from compiler.lower_parts import code_of
-from compiler.sketch.algebra import plus, scaled
+from compiler.sketch.algebra import plus, scaled, with_constants
 from compiler.sketch.curves import TURN, Curve
 from compiler.sketch.design import Design, Node, Ridge
 from compiler.sketch.drawing import Orbit, Pair
@@ -31,6 +32,8 @@ FEATURES: Final = {
     "saddle": "saddle",
 }
 """What each kind of point is called in claims."""
+TURNING: Final = {"attractor": "stable focus", "repeller": "unstable focus"}
+"""What an added point inside an orbit is called: it turns as the orbit does."""
 
 
 def sketch_claims(design: Design, loaded: Loaded) -> tuple[Claim, ...]:
@@ -85,6 +88,32 @@ def sketch_claims(design: Design, loaded: Loaded) -> tuple[Claim, ...]:
     rest = ("fixed point", "cycle")
     whole: Path = ("field", "sketch")
     return (*found, *(told(f"no other {feature}", feature, whole, count=0) for feature in rest))
+
+
+def additions(design: Design, declared: Declarations) -> Iterator[str]:
+    """What index theory demanded beside the drawing, a sentence for each, with the reason."""
+    cores = [family.core for family in design.families]
+    for node in design.nodes:
+        point = node.point
+        if point.why:
+            turns = any(node is core for core in cores)
+            feature = (TURNING if turns else FEATURES)[point.kind]
+            at = _spelled(point.at, design.frame, declared)
+            yield f"added: one {feature} '{point.name}' at {at}, because {point.why}"
+    for orbit, _, _ in _orbits(design):
+        if orbit.why:
+            feature = "stable cycle" if orbit.attracts else "unstable cycle"
+            yield f"added: one {feature} '{orbit.name}', because {orbit.why}"
+
+
+def _spelled(at: Pair, frame: Frame, declared: Declarations) -> str:
+    """A place in the user's units, at the controls' defaults."""
+    found = []
+    for name, expr in zip(frame.over, at, strict=True):
+        unit = declared.variable(name).unit
+        value = _now(with_constants(expr, frame.constants), frame) / unit.scale
+        found.append(f"{name} = {value:.4g}" + ("" if unit.text == "1" else f" {unit.text}"))
+    return ", ".join(found) + (" (at the controls' defaults)" if frame.moving else "")
 
 
 def _sentence(node: Node) -> str:

@@ -20,6 +20,7 @@ from compiler.sketch.polygons import (
     sees_all,
     viewpoint,
 )
+from compiler.sketch.ridges import on_ridge
 from runtime.arrays import Array
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.tree import Expr
@@ -241,16 +242,7 @@ def _ridge(line: Line, frame: Frame) -> Ridge:
         remedy = "let its points advance from one end to the other"
         raise SketchRefusedError("S265", line.path, message, remedy)
     saddle = (through[0] + through[-1]) / 2 if line.saddle is None else frame.spot(line.saddle).at
-    return Ridge(line, through, _on_curve(through, saddle))
-
-
-def _on_curve(through: Array, saddle: Array) -> Array:
-    """The place of the polyline that is right beside the saddle."""
-    chord = (through[-1] - through[0]) / np.linalg.norm(through[-1] - through[0])
-    s = (through - through[0]) @ chord
-    at = float((saddle - through[0]) @ chord)
-    found = [np.interp(at, s, through[:, axis]) for axis in (0, 1)]
-    return np.array(found)
+    return Ridge(line, through, on_ridge(through, saddle))
 
 
 def _refuse_coincidences(

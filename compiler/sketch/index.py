@@ -150,7 +150,7 @@ def _between(first: Item, second: Item, items: tuple[Item, ...], half: Pair) -> 
     for source in _of("repeller", items):
         if np.linalg.norm(source.at - at) < ASIDE * length:
             return _beside(source, items, half)
-    why = f"between {first.name} and {second.name}, which draw apart"
+    why = f"'{first.name}' and '{second.name}' draw apart what starts between them"
     name = f"saddle between {first.name} and {second.name}"
     return Item("saddle", name, at, place, ends=(first.place, second.place), why=why)
 
@@ -171,7 +171,7 @@ def _beside(source: Item, items: Sequence[Item], half: Pair) -> Item:
     nearest, way = _free(source, items)
     step = 0.8 * nearest * way
     place = _shifted(source, step, half)
-    why = f"beside {source.name}: what it sends out meets what comes from the border"
+    why = f"what '{source.name}' sends out meets what comes from the border"
     found = Item("saddle", f"saddle beside {source.name}", source.at + step, place, why=why)
     return replace(found, ends=(source.place, place), inward=True)
 
@@ -194,7 +194,7 @@ def _goal(items: tuple[Item, ...], half: Pair) -> Item | None:
             if not reached:
                 others = [_apart(o, saddle) for o in items if o is not saddle]
                 step = min(others, default=1.0) * way
-                why = f"where the way out of {saddle.name} leads"
+                why = f"the way out of '{saddle.name}' must lead somewhere"
                 name = f"attractor beyond {saddle.name}"
                 place = _shifted(saddle, step, half)
                 return Item("attractor", name, saddle.at + step, place, why=why)

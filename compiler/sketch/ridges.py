@@ -65,10 +65,26 @@ class RidgeModel:
 
 def ridge_through(points: Array, saddle: Array, rates: tuple[Expr, Expr]) -> RidgeModel:
     """The separatrix through points (V, 2), with its saddle beside the given place (2,)."""
-    span = points[-1] - points[0]
-    chord = span / np.linalg.norm(span)
-    y = points - points[0]
-    s, height = y @ chord, y @ quarter_turn(chord)
+    chord, s, height = _over_chord(points)
     graph = scipy.interpolate.CubicSpline(s, height, bc_type="natural")
     place = float((saddle - points[0]) @ chord)
     return RidgeModel(graph, points[0], chord, s[[0, -1]], place, rates)
+
+
+def on_ridge(points: Array, near: Array) -> Array:
+    """The place (2,) of the curve through points (V, 2) that is right beside `near` (2,)."""
+    chord, s, height = _over_chord(points)
+    graph = scipy.interpolate.CubicSpline(s, height, bc_type="natural")
+    place = (near - points[0]) @ chord
+    inside = np.clip(place, s[0], s[-1])
+    beside = graph(inside) + (place - inside) * graph(inside, 1)
+    found: Array = points[0] + place * chord + beside * quarter_turn(chord)
+    return found
+
+
+def _over_chord(points: Array) -> tuple[Array, Array, Array]:
+    """The unit vector from the first point to the last; along it and beside it, all points."""
+    span = points[-1] - points[0]
+    chord = span / np.linalg.norm(span)
+    y = points - points[0]
+    return chord, y @ chord, y @ quarter_turn(chord)

@@ -44,13 +44,13 @@ def compile_(
         compiled = loading.compile_spec(spec, progress)
     show_diagnostics(compiled.warnings)
     if dump:
-        text = dumped(compiled.program)
+        text = dumped(compiled.program, compiled.notes)
         print_json({"dump": text}) if form is Format.JSON else print_text(text)
         return
     path = output or Path(f"{compiled.program.name}.specc")
     data = loading.write_artifact(compiled.program, path)
     if form is Format.JSON:
-        print_json(printing.compile_record(compiled.program, path, data))
+        print_json(printing.compile_record(compiled, path, data))
         return
-    print_text(printing.compile_summary(compiled.program))
+    print_text(printing.compile_summary(compiled))
     say(f"wrote {path} ({len(data):,} bytes)", "bold")

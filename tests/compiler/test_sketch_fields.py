@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from compiler.compile import compile_file, compile_loaded
 from compiler.sketch.index import Item, completed, index_of
+from compiler.sketch.ridges import on_ridge, ridge_through
 from runtime.flow import flow_of, rates
 from runtime.integrators import adaptive
 from runtime.program import Program
@@ -124,6 +125,39 @@ def test_along_an_edge_the_patrol_moves_as_fast_as_it_says(patrol: Program) -> N
     found = rates(flow_of(patrol), np.array([[0.0, 0.5]]), np.array([[1.2, -1.2, 0.5, 0.5]]))
 
     assert found[0] == pytest.approx([0.5, 0.0], rel=0.06, abs=5e-3)
+
+
+def test_what_index_theory_adds_is_named_with_its_reason() -> None:
+    loaded = load_source(
+        Source(
+            "spec.yaml",
+            HEAD
+            + "    points: [{is: attractor, at: [-1, 0], name: a}, {is: attractor, at: [1, 0], "
+            "name: b}]\n"
+            "    orbits:\n"
+            "      - {name: lap, through: [[-1, 1.5], [0, 1], [1, 1.5], [0, 1.9]], period: 4}\n",
+        )
+    )
+
+    notes = compile_loaded(loaded, lambda *_: None).notes
+
+    assert all(note.startswith("added: one ") for note in notes)
+    assert sum("saddle" in note for note in notes) == 2
+    [core] = [note for note in notes if "unstable focus" in note]
+    assert "'repeller inside lap' at x = 0 m" in core
+    assert core.endswith("because an orbit encloses a point, and 'lap' encloses none")
+
+
+def test_the_saddle_of_a_bent_separatrix_lies_on_it() -> None:
+    points = np.array([[0.0, -1.0], [0.6, -0.2], [0.5, 0.4], [-0.2, 1.0]])
+    near = np.array([0.1, 0.0])
+
+    saddle = on_ridge(points, near)
+
+    model = ridge_through(points, near, (HALF, HALF))
+    assert model.distance(saddle[np.newaxis], {}) == pytest.approx(0.0, abs=1e-12)
+    assert model.parts(saddle[np.newaxis], {}) == pytest.approx(0.0, abs=1e-12)
+    assert np.dot(saddle - near, points[-1] - points[0]) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_fill_that_the_judge_never_accepts_is_refused() -> None:
