@@ -20,6 +20,9 @@ from verifier.topology.findings import Settings
 from verifier.topology.portrait import Detail, portrait
 
 BASIN: Final = "basin"
+RAYS: Final = 1
+"""From each fixed point, to find cycles; limits of trajectories are looked at beside them."""
+
 NODES: Final = 33
 """Per axis of the sampled field, which no claim is about."""
 
@@ -56,6 +59,7 @@ class Scenes:
     def __init__(self, program: Program) -> None:
         self.program = program
         self._made: dict[tuple[Settings, bool, bool], Portrait] = {}
+        self._defaults = {control.name: control.default for control in program.controls}
 
     def axes(self, settings: Settings) -> tuple[str, ...]:
         """The states that move at `settings`."""
@@ -74,20 +78,26 @@ class Scenes:
         Raises:
             SliceError: nothing moves, or too much.
         """
-        if (settings, cycles, basins) in self._made:
-            return self._made[settings, cycles, basins]
+        every = tuple(sorted((self._defaults | dict(settings)).items()))
+        if (every, cycles, basins) in self._made:
+            return self._made[every, cycles, basins]
         axes = self.axes(settings)
         detail = Detail(
             plane=NODES,
             trajectories=0,
             cycles=cycles,
             separatrices=False,
+            nullclines=False,
+            rays=RAYS,
+            compared=False,
             basins=CELLS.get(len(axes), 0) if basins else 0,
         )
         made = portrait(self.program, axes, dict(settings), detail)
+        if basins:
+            self._made[every, cycles, False] = replace(made, basins=None)
         if cycles:
-            self._made[settings, False, False] = replace(made, cycles=(), basins=None)
-        self._made[settings, cycles, basins] = made
+            self._made[every, False, False] = replace(made, cycles=(), basins=None)
+        self._made[every, cycles, basins] = made
         return made
 
 

@@ -61,9 +61,13 @@ SADDLES_UNSEEN: Final = (
 
 
 def find_cycles(
-    view: Slice, fixed_points: tuple[FixedPoint, ...]
+    view: Slice, fixed_points: tuple[FixedPoint, ...], rays: int = len(DIRECTIONS)
 ) -> tuple[tuple[Cycle, ...], tuple[str, ...]]:
-    """The cycles, the shortest period first, and notes on what they do not tell."""
+    """The cycles, the shortest period first, and notes on what they do not tell.
+
+    rays: so many leave each fixed point at most. A cycle crosses each, so one would do; the others
+    are for cycles that cross the first one where it is nearly along the field.
+    """
     if view.is_map:
         return find_map_cycles(view)
     tempo = pace(view)
@@ -72,7 +76,7 @@ def find_cycles(
     candidates: list[Candidate] = []
     notes: list[str] = []
     if len(view.axes) == 2:
-        sections, lengths = _sections(view, fixed_points)
+        sections, lengths = _sections(view, fixed_points, rays)
         for step in (tempo, -tempo) if sections else ():
             seen = scan(view, sections, lengths, step)
             candidates += seen.candidates
@@ -96,11 +100,11 @@ def _order(cycle: Cycle) -> tuple[float, float]:
 
 
 def _sections(
-    view: Slice, fixed_points: tuple[FixedPoint, ...]
+    view: Slice, fixed_points: tuple[FixedPoint, ...], rays: int
 ) -> tuple[tuple[Section, ...], tuple[float, ...]]:
     """Rays from all fixed points but saddles, lines across periodic axes; their lengths."""
     centres = [point.at for point in fixed_points if point.kind is not PointKind.SADDLE]
-    count = max(1, min(len(DIRECTIONS), MOST_RAYS // max(1, len(centres))))
+    count = max(1, min(rays, MOST_RAYS // max(1, len(centres))))
     sections: list[Section] = []
     lengths: list[float] = []
     for at in centres:

@@ -45,12 +45,13 @@ class _Scene:
 
 
 def find_fixed_points(
-    view: Slice, grid: Grid
+    view: Slice, grid: Grid, *, compare: bool = True
 ) -> tuple[tuple[FixedPoint, ...], Completeness, tuple[str, ...]]:
     """The fixed points in order of their coordinates, how complete they are, and notes.
 
     The proved zeros come with those in undecided boxes that Newton's method finds, and with places
     where the tables are so near to zero that their error leaves it open.
+    compare: whether zeros of tables are held against those of the formula.
     """
     scale = largest_rates(grid)
     if not np.all(scale > 0.0):
@@ -59,7 +60,7 @@ def find_fixed_points(
     rate = 1.0 if view.is_map else float(np.nanmax(np.abs(grid.rates) / view.width))
     scene = _Scene(view, scale, rate)
     proof = prove(view)
-    standings, lost = _standings(view, proof)
+    standings, lost = _standings(view, proof, compare=compare)
     points = _proved(scene, proof, standings)
     loose = zeros_in(view, proof.undecided, scale)
     known = np.concatenate([proof.zeros, loose])
@@ -76,8 +77,8 @@ def _nothing_known(view: Slice) -> Completeness:
     return Completeness(complete=False, undecided=(everywhere,), lost=nothing, about="")
 
 
-def _standings(view: Slice, proof: Proof) -> tuple[tuple[Standing, ...], Array]:
-    if view.formula is None:
+def _standings(view: Slice, proof: Proof, *, compare: bool) -> tuple[tuple[Standing, ...], Array]:
+    if view.formula is None or not compare:
         nothing = frozen(np.empty((0, len(view.axes))))
         return tuple(Standing.UNCOMPARED for _ in proof.zeros), nothing
     return compared(view, proof, prove(view, source=Source.FORMULA))

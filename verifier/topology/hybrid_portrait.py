@@ -55,16 +55,25 @@ class InMode:
 
 
 def with_modes(
-    hybrid: Hybrid, plain: Portrait, grid: Grid, *, cycles: bool, paths: int, basins: int
+    hybrid: Hybrid,
+    plain: Portrait,
+    grid: Grid,
+    *,
+    cycles: bool,
+    paths: int,
+    basins: int,
+    compared: bool,
 ) -> Portrait:
     """The portrait with all modes, given `plain`: as if the shown mode were never left.
 
-    cycles: whether they are looked for; paths: how many are followed; basins: cells per axis.
-    Separatrices are not traced.
+    cycles: whether they are looked for; paths: how many are followed; basins: cells per axis;
+    compared: whether zeros of tables are held against those of the formula. Separatrices are not
+    traced.
     """
     shown = _kept(hybrid, hybrid.shown, (plain.fixed_points, plain.cycles, plain.completeness))
     others = (mode for mode in range(len(hybrid.modes)) if mode != hybrid.shown)
-    each = (shown, *(_in_mode(hybrid, mode, grid, cycles=cycles) for mode in others))
+    look = {"cycles": cycles, "compared": compared}
+    each = (shown, *(_in_mode(hybrid, mode, grid, **look) for mode in others))
     through, notes = find_hybrid_cycles(hybrid) if cycles else ((), ())
     closed = (*through, *(cycle for one in each for cycle in one.cycles))
     closed = tuple(sorted(closed, key=lambda cycle: cycle.period))
@@ -100,13 +109,14 @@ def _where(hybrid: Hybrid, point: FixedPoint, mode: int) -> str:
     return f"the {point.kind} at {_place(hybrid, point.at)} is one of '{hybrid.modes[mode]}'"
 
 
-def _in_mode(hybrid: Hybrid, mode: int, grid: Grid, *, cycles: bool) -> InMode:
+def _in_mode(hybrid: Hybrid, mode: int, grid: Grid, *, cycles: bool, compared: bool) -> InMode:
     """What another mode than the shown one has."""
     whole = hybrid.view.whole.program
     held = {each.name: each.value for each in hybrid.view.held} | {whole.field.mode: float(mode)}
     view = cut(whole, tuple(axis.name for axis in hybrid.view.axes), held)
     places = np.stack(np.meshgrid(*grid.nodes, indexing="ij"), axis=-1)
-    points, completeness, _ = find_fixed_points(view, Grid(grid.nodes, rates_at(view, places)))
+    on_grid = Grid(grid.nodes, rates_at(view, places))
+    points, completeness, _ = find_fixed_points(view, on_grid, compare=compared)
     closed = find_cycles(view, points)[0] if cycles else ()
     return _kept(hybrid, mode, (points, closed, completeness))
 

@@ -9,7 +9,7 @@ import numpy as np
 from runtime.arrays import frozen
 from runtime.program import Program
 from verifier.topology.basins import find_basins
-from verifier.topology.cycles import find_cycles
+from verifier.topology.cycles import DIRECTIONS, find_cycles
 from verifier.topology.features import (
     Cycle,
     FixedPoint,
@@ -33,7 +33,9 @@ from verifier.topology.trajectories import find_trajectories
 class Detail:
     """How finely to look: points per axis by the number of axes, and how many trajectories.
 
-    cycles, separatrices: whether they are looked for. basins: cells per axis, 0 for none.
+    cycles, separatrices, nullclines: whether they are looked for. basins: cells per axis, 0 for
+    none. rays: how many are laid from each point to find cycles. compared: whether zeros of
+    tables are held against those of the formula.
     """
 
     plane: int = 257
@@ -42,7 +44,10 @@ class Detail:
     trajectories: int = 4
     cycles: bool = True
     separatrices: bool = True
+    nullclines: bool = True
     basins: int = 0
+    rays: int = len(DIRECTIONS)
+    compared: bool = True
 
 
 EVERYTHING: Final = Detail()
@@ -84,15 +89,16 @@ def portrait(
         cycles=detail.cycles,
         paths=detail.trajectories,
         basins=detail.basins,
+        compared=detail.compared,
     )
 
 
 def _assembled(program: Program, view: Slice, grid: Grid, detail: Detail) -> Portrait:
     """The portrait; of a field with modes, as if the one that is shown were never left."""
-    points, completeness, remarks = find_fixed_points(view, grid)
+    points, completeness, remarks = find_fixed_points(view, grid, compare=detail.compared)
     cycles, hints = _cycles(view, points, detail)
     separatrices = find_separatrices(view, points, cycles) if detail.separatrices else ()
-    planar = len(view.axes) == 2
+    lines = detail.nullclines and len(view.axes) == 2
     return Portrait(
         name=program.name,
         about=program.about,
@@ -100,7 +106,7 @@ def _assembled(program: Program, view: Slice, grid: Grid, detail: Detail) -> Por
         held=view.held,
         every=program.field.every,
         field=_thinned(grid, 2 * FIELD_STRIDE if len(view.axes) == 1 else FIELD_STRIDE),
-        nullclines=find_nullclines(view, grid) if planar else (),
+        nullclines=find_nullclines(view, grid) if lines else (),
         fixed_points=points,
         completeness=completeness,
         cycles=cycles,
@@ -116,7 +122,7 @@ def _cycles(
     view: Slice, points: tuple[FixedPoint, ...], detail: Detail
 ) -> tuple[tuple[Cycle, ...], tuple[str, ...]]:
     """The cycles, and notes on them; none where nobody asked."""
-    return find_cycles(view, points) if detail.cycles else ((), ())
+    return find_cycles(view, points, detail.rays) if detail.cycles else ((), ())
 
 
 def _trajectories(

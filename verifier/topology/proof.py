@@ -51,6 +51,9 @@ SIZES: Final = (2.0, 0.5, 0.1, 0.01, 1e-3)
 LEAST_START: Final = {1: 64, 2: 32, 3: 12, 4: 6}
 """Boxes per axis that a search begins with, for each number of axes."""
 
+NEWTON_ENDS: Final = 1e-14
+"""Newton's method is done when it moves a point by less than this share of its box."""
+
 MOST_START: Final = 140_000
 """A search that begins with the cells of a table begins with no more boxes than this."""
 
@@ -273,6 +276,8 @@ def _polished(search: _Search, points: Array, radius: Array) -> tuple[Array, Arr
             step = np.einsum("...ij,...j->...i", J, f)
         kept = np.all(np.abs(points - step - start) <= 4.0 * radius, axis=-1)
         points, start, radius = (points - step)[kept], start[kept], radius[kept]
+        if np.all(np.abs(step[kept]) <= NEWTON_ENDS * radius):
+            break
     return points, radius
 
 

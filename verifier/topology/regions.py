@@ -18,6 +18,9 @@ from verifier.topology.slices import Slice
 ROUNDING: Final = 1e-12
 """A zero this share of the domain outside of it counts as one on its border."""
 
+POINT: Final = 2.0**-60
+"""A box of this share of a region's radius is as good as a point."""
+
 CONTRACTIONS: Final = 12
 """So often is a box around a zero contracted at most; from a tenth of the domain it takes six."""
 
@@ -56,9 +59,12 @@ def proved_regions(field: Enclosure, points: Array, radius: Array) -> Regions | 
     if not np.any(ok):
         return None
     narrow = narrowed(found, low, high)
-    small = np.minimum(3.0 * reach + 1e-14 * np.abs(points), inner)
+    small = np.minimum(3.0 * reach + 1e-14 * np.abs(points) + POINT * inner, inner)
     narrow = _around(field, points, exact, small, narrow)
-    narrow = _tightened(field, *narrow, inverses, ok)
+    fine = 2.0**-52 * np.abs(points) + 4.0 * POINT * inner
+    narrow = _tightened(
+        field, *narrow, inverses, ok & np.any(narrow[1] - narrow[0] > fine, axis=-1)
+    )
     return Regions(points, np.where(ok[:, None], inner, np.nan), *narrow)
 
 
@@ -97,7 +103,7 @@ def _tightened(
 ) -> tuple[Array, Array]:
     """Boxes around proved zeros, contracted as far as it goes."""
     low, high = low.copy(), high.copy()
-    for _ in range(CONTRACTIONS):
+    for _ in range(CONTRACTIONS if np.any(ok) else 0):
         centre = 0.5 * (low[ok] + high[ok])
         radius = np.nextafter(np.maximum(high[ok] - centre, centre - low[ok]), np.inf)
         values, J = changes(field, centre, centre), slopes(field, low[ok], high[ok])
