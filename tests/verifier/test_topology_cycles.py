@@ -192,6 +192,19 @@ def test_three_nested_cycles_are_all_found() -> None:
         assert math.log(cycle.multipliers[0].real) == pytest.approx(logarithm, rel=1e-6)
 
 
+@pytest.mark.parametrize("width", [40.0, 4e3, 4e4])
+def test_a_cycle_that_is_tiny_beside_the_domain_is_found(width: float) -> None:
+    """Radius 1 in a domain that is 40 to 40,000 wide."""
+    square = f"1 {R} sub tanh"
+    states = tuple(state(name, -0.5 * width, 0.52 * width) for name in "xy")
+    tiny = behavior("tiny", states, (f"x {square} mul y sub", f"y {square} mul x add"))
+
+    [cycle] = cycles_of(tiny, ORIGIN)
+
+    assert np.hypot(*cycle.points.T) == pytest.approx(1.0, rel=1e-4)
+    assert cycle.multipliers[0].real == pytest.approx(math.exp(-4.0 * math.pi), rel=1e-3)
+
+
 def test_cycles_are_found_where_the_field_is_a_million_times_slower_than_at_its_corners() -> None:
     """The median speed is that of the outskirts, where a polynomial of ninth order is huge."""
     squares = (0.01, 0.04, 0.12, 0.2)

@@ -187,6 +187,30 @@ def half_turn(rate: float, goal: float) -> tuple[float, float]:
     return time, goal + (rate - goal) * math.exp(-time)
 
 
+def test_a_cycle_beside_a_continuum_of_closed_ways_is_found() -> None:
+    """Below 1/2 the jump leaves y as it is, above it leads towards 1."""
+    jump = "y 0.5 gt y 1 sub 0.3 mul 1 add y where"
+
+    [cycle], [note] = find_hybrid_cycles(hybrid(carousel(jump)))
+
+    assert cycle.points[:, 1] == pytest.approx(1.0, abs=1e-6)
+    assert cycle.multipliers[0].real == pytest.approx(0.3)
+    assert "close wherever they begin" in note
+
+
+def test_orbits_of_three_turns_have_the_multipliers_of_their_map() -> None:
+    a = 3.83
+    found = cycles(carousel(f"{a} y mul 1 y sub mul"))
+
+    thrice = [cycle for cycle in found if cycle.period == pytest.approx(6.0)]
+    assert thrice
+    for cycle in thrice:
+        ys = np.interp([0.9, 2.9, 4.9], cycle.times, cycle.points[:, 1])
+        value = np.prod(a * (1.0 - 2.0 * ys))
+        assert cycle.multipliers[0].real == pytest.approx(value, rel=1e-3)
+        assert not cycle.doubtful
+
+
 @pytest.mark.parametrize("turned", [0.3, 0.0, math.pi, math.pi - 1e-9])
 def test_modes_without_a_gap_between_them_have_one_cycle_also_on_the_seam(turned: float) -> None:
     def turn(rate: float) -> tuple[float, float]:

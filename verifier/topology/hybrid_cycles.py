@@ -43,7 +43,11 @@ LONGER: Final = 1.01
 NEUTRAL: Final = 1e-6
 AGREEMENT: Final = 1e-4
 """Multipliers by two methods that differ by more than this share are doubtful."""
-CONTINUUM: Final = "every trajectory through several modes closes: these are not listed as cycles"
+ENOUGH: Final = 8
+"""So many neutral cycles are a continuum; beside fewer of them there may be others."""
+CONTINUUM: Final = (
+    "trajectories through several modes close wherever they begin: these are not listed as cycles"
+)
 
 
 @final
@@ -72,7 +76,7 @@ def find_hybrid_cycles(hybrid: Hybrid) -> tuple[tuple[Cycle, ...], tuple[str, ..
         return (), ()
     lanes = _spread_out(hybrid)
     found: list[Course] = []
-    neutral = False
+    neutral = 0
     for guess in _candidates(hybrid, lanes):
         if _is_known(hybrid, found, guess):
             continue
@@ -81,9 +85,11 @@ def find_hybrid_cycles(hybrid: Hybrid) -> tuple[tuple[Cycle, ...], tuple[str, ..
             continue
         course = _course(hybrid, exact)
         if course.cycle.stability is Stability.NEUTRAL:
-            neutral = True
-            break
-        found.append(course)
+            neutral += 1
+            if neutral == ENOUGH:
+                break
+        else:
+            found.append(course)
     cycles = sorted((course.cycle for course in found), key=lambda cycle: cycle.period)
     return tuple(cycles), (*_chattering(hybrid, lanes), *([CONTINUUM] if neutral else []))
 

@@ -56,7 +56,7 @@ def _settled(view: Slice, step: float) -> Array:
     length = np.zeros(len(here))
     for chunk in LASTING:
         paths = moved(view, here, np.linspace(0.0, chunk * step, SETTLING_SAMPLES + 1), TOLERANCE)
-        done = travelled(view, paths)
+        done = travelled(view, paths, chunk)
         length += done
         there = (done > 0.0) & np.isfinite(length) & (length >= SETTLED)
         ended.append(paths[there, -1])
@@ -103,7 +103,7 @@ def _returning(view: Slice, points: Array, step: float) -> list[tuple[Array, flo
             for lane, at in zip(going, back, strict=True)
             if at is not None
         ]
-        done = travelled(view, paths)
+        done = travelled(view, paths, chunk)
         length += done
         rest = np.array([at is None for at in back]) & (done > 0.0) & (length < LONGEST)
         going, here, length = going[rest], paths[rest, -1], length[rest]

@@ -22,7 +22,10 @@ Polynomials of high order are a million times faster at the domain's corners tha
 """
 
 STUCK: Final = 1e-7
-"""A path that moved less than this share of the widths in such a duration has come to rest."""
+"""A path that moved less than this share of the widths in such a duration has come to rest;"""
+
+PATIENT: Final = 1024.0
+"""if it is shorter than so many paces, less by that share: it may be slow where it begins."""
 
 PROBES: Final = 256
 """Places at which the speed of a field is looked at."""
@@ -46,12 +49,15 @@ def moved(view: Slice, starts: Array, times: Array, tolerance: float) -> Array:
     return np.asarray(np.concatenate([starts[:, None], starts[:, None] + gone], axis=1))
 
 
-def travelled(view: Slice, paths: Array) -> Array:
-    """The lengths (L,) of paths (L, T, m), in widths; 0 at rest, infinite if the domain is left."""
+def travelled(view: Slice, paths: Array, lasted: float) -> Array:
+    """The lengths (L,) of paths (L, T, m), in widths; 0 at rest, infinite if the domain is left.
+
+    lasted: their duration, in paces.
+    """
     steps = np.linalg.norm(np.diff(paths, axis=1) / view.width, axis=-1)
     length = steps.sum(axis=1)
     far = np.abs(paths - paths[:, :1]) / view.width
-    rests = np.max(far, axis=(1, 2), initial=0.0) < STUCK
+    rests = np.max(far, axis=(1, 2), initial=0.0) < STUCK * min(1.0, lasted / PATIENT)
     return np.asarray(np.where(np.isfinite(length), np.where(rests, 0.0, length), np.inf))
 
 

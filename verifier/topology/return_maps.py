@@ -15,7 +15,10 @@ from verifier.topology.sections import Lanes, Section, first_returns, points_of
 from verifier.topology.slices import Slice
 
 PLACES: Final = 40
-"""Starts on each section."""
+"""Starts on each section, closer together towards a ray's fixed point (Hopf), and"""
+
+NEAREST: Final = np.geomspace(1e-5, 0.5 / PLACES**2, 10)
+"""some on a ray that are closer still, as shares of it; a line has as many more."""
 
 FINER: Final = 9
 """Starts on a stretch of a section that is looked at again."""
@@ -85,8 +88,9 @@ def scan(
     A negative step follows time backwards, which finds what forwards is out of reach.
     """
     share = np.arange(1, PLACES + 1) / PLACES
-    # More of them near a ray's fixed point: cycles begin small there (Hopf).
-    reach = [share - 0.5 / PLACES if one.around >= 0 else share**2 for one in sections]
+    ray = np.concatenate([NEAREST, share**2])
+    around = (np.arange(ray.size) + 0.5) / ray.size
+    reach = [around if one.around >= 0 else ray for one in sections]
     s = np.array([0.999 * b * r for b, r in zip(lengths, reach, strict=True)])
     rows = _mapped(view, sections, np.arange(len(sections)), s, step)
     closing = _continua(rows, np.array(lengths))
@@ -258,4 +262,6 @@ def _bends(rows: _Rows, sign: Array) -> Booleans:
         bend = before - 2.0 * here + after
         vertex = here - (after - before) ** 2 / (8.0 * bend)
         near = vertex <= 0.3 * np.maximum(before, after)
+        # What can't be told from zero around either, as close to a weak focus, has no least place.
+        near &= np.maximum(before, after) > 3.0 * rows.floor[:, 1:-1]
     return np.asarray(same & least & near)

@@ -93,7 +93,7 @@ def first_returns(view: Slice, lanes: Lanes, step: float) -> Returns:
             view, frame.taken(going[back]), sides[going[back]], path[back, index[back]], clock[1]
         )
         times[going[back]] = passed + clock[index[back]] + when
-        done = travelled(view, path)
+        done = travelled(view, path, chunk)
         length += done
         rest = ~hit & (done > 0.0) & (length < LONGEST)
         going, here, length = going[rest], path[rest, -1], length[rest]

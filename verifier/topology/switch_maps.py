@@ -20,7 +20,7 @@ from verifier.topology.slices import Slice, shortest, wrapped
 Kind: TypeAlias = tuple[int, int]
 """The modes that a switch leaves and enters."""
 
-NUDGE: Final = 1e-4
+NUDGE: Final = 1e-5
 """How far starts are displaced, in widths, where the map is differentiated."""
 ROUNDS: Final = 16
 CLOSED: Final = 1e-9
