@@ -414,6 +414,17 @@ def test_henons_map_settles_on_an_orbit_of_four() -> None:
     assert [len(cycle.points) - 1 for cycle in stable] == [4]
 
 
+def test_steps_of_half_a_turn_have_one_derivative_on_both_sides() -> None:
+    """The angle goes on by pi + 0.3 sin(2 angle): 0, pi and pi/2, -pi/2 are orbits of two."""
+    angle = state("angle", -math.pi, math.pi, kind=Kind.PERIODIC)
+    step = f"angle {math.pi!r} add 0.3 angle 2 mul sin mul add"
+
+    found = cycles_of(behavior("half_turn", (angle,), (step,), every=1.0))
+
+    assert [c.multipliers[0].real for c in found] == pytest.approx([1.6**2, 0.4**2])
+    assert not any(c.doubtful for c in found)
+
+
 def test_a_rotation_by_a_quarter_is_a_continuum_of_orbits() -> None:
     program = behavior(
         "rotation", (state("x", 0.0, 1.0, kind=Kind.PERIODIC),), ("x 0.25 add",), every=1.0

@@ -165,6 +165,20 @@ def test_a_zero_at_the_edge_of_where_the_field_exists_has_no_eigenvalues() -> No
     assert edge.eigenvalues == ()
 
 
+@pytest.mark.parametrize(
+    ("rate", "at"),
+    [("1 x div 1 sub", 1.0), ("20 x mul sinh neg", 0.0), ("x 700 mul exp 1 sub neg", 0.0)],
+)
+def test_a_field_that_is_huge_elsewhere_keeps_the_types_that_are_proved(
+    rate: str, at: float
+) -> None:
+    [found] = portrait(plane(rate, "y neg"), detail=POINTS_ONLY).fixed_points
+
+    assert found.at == pytest.approx([at, 0.0], abs=1e-12)
+    assert found.kind is PointKind.STABLE_NODE
+    assert found.kind_proved
+
+
 def test_a_line_of_fixed_points_is_sampled_and_said() -> None:
     found = seen(plane("x neg", "x y mul"))
 

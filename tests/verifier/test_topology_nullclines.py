@@ -132,3 +132,14 @@ def test_a_table_shows_a_touching_line_within_its_error() -> None:
     points = np.concatenate(found)
     assert points[:, 0] == pytest.approx(points[:, 1] ** 2, abs=5e-3)
     assert np.ptp(points[:, 1]) > 2.5
+
+
+@pytest.mark.parametrize(
+    ("rate", "at"), [("20 x mul sinh 1 sub", math.asinh(1.0) / 20.0), ("x 700 mul exp 1 sub", 0.0)]
+)
+def test_a_nullcline_is_where_it_is_although_the_rate_is_huge_elsewhere(
+    rate: str, at: float
+) -> None:
+    [line] = lines(plane(rate, "y neg"))
+
+    assert line[:, 0] == pytest.approx(at, abs=1e-5)

@@ -1,6 +1,6 @@
 """Zeros of one rate on the edges of a planar grid: crossing zero, touching it, bordering on it.
 
-f: the rate, divided by its largest size on the grid.
+f: the rate, divided by its typical size on the grid.
 """
 
 from collections.abc import Callable

@@ -3,7 +3,7 @@
 m: number of axes; J: Jacobian (m, m) at a point.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -95,7 +95,9 @@ def _proved(scene: _Scene, proof: Proof, standings: tuple[Standing, ...]) -> lis
     for i, at in enumerate(proof.zeros):
         eigenvalues, vectors = spectrum(J[i])
         of_formula = None if formula is None else spectrum(formula[i])[0]
-        kind = _kind(scene, J[i], eigenvalues, of_formula)
+        # Where the bounds decide what grows, no rate is too small to count.
+        rate = scene.rate if proof.unstable[i] is None else 0.0
+        kind = _kind(replace(scene, rate=rate), J[i], eigenvalues, of_formula)
         points.append(
             FixedPoint(
                 at=frozen(at),

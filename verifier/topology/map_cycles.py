@@ -214,7 +214,7 @@ def _differenced(view: Slice, start: Array, k: int) -> Array:
     nudges = NUDGE * np.diag(view.width)
     ends = _path(view, np.concatenate([start + nudges, start - nudges]), k)[-1]
     ahead, behind = np.split(ends, 2)
-    return np.asarray(((ahead - behind) / (2.0 * NUDGE) / view.width).T)
+    return np.asarray((shortest(view, ahead - behind) / (2.0 * NUDGE) / view.width).T)
 
 
 def _eigenvalues(matrix: Array) -> tuple[complex, ...]:

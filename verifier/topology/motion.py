@@ -63,6 +63,7 @@ def travelled(view: Slice, paths: Array, lasted: float) -> Array:
 
 def pace(view: Slice) -> float:
     """The time in which a typical point of the slice crosses it, s; infinite if nothing moves."""
-    speed = np.linalg.norm(rates_at(view, spread(view, PROBES)) / view.width, axis=-1)
+    with np.errstate(over="ignore"):
+        speed = np.linalg.norm(rates_at(view, spread(view, PROBES)) / view.width, axis=-1)
     moving = speed[np.isfinite(speed) & (speed > 0.0)]
     return float(1.0 / np.median(moving)) if moving.size else np.inf

@@ -1,7 +1,7 @@
 """Nullclines: where one variable's rate is zero, with every branch.
 
 Crossing zero, touching it (0 = x²), crossing one another, and the borders of areas where the rate
-is zero throughout. f: one rate, divided by its largest size.
+is zero throughout. f: one rate, divided by its typical size.
 """
 
 from typing import Final
@@ -21,6 +21,9 @@ love. Nodes that are zero all the same lie in an area of zeros."""
 MOST_BLUR: Final = 1e-5
 """A table's error beyond this is no reason to see a line where none is."""
 
+HUGE: Final = 1e50
+"""More of f is as good as infinite."""
+
 PROBE: Final = 0.05
 """The step, in cells, of the differences that a saddle of f is found with."""
 
@@ -31,6 +34,7 @@ def find_nullclines(view: Slice, grid: Grid) -> tuple[Nullcline, ...]:
     """The nullclines of both axes of a planar slice; none for a variable that never moves."""
     x, y = (_shifted(axis, shift) for axis, shift in zip(grid.nodes, SHIFTS, strict=True))
     rates = rates_at(view, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1))
+    rates = np.where(np.isfinite(rates), rates, np.nan)
     return tuple(
         Nullcline(axis.name, _lines(view, (x, y), rates[..., j], j))
         for j, axis in enumerate(view.axes)
@@ -44,12 +48,13 @@ def _shifted(nodes: Array, shift: float) -> Array:
 
 
 def _lines(view: Slice, nodes: tuple[Array, Array], rates: Array, j: int) -> tuple[Array, ...]:
-    scale = float(np.nanmax(np.abs(rates)))
-    f = rates / scale
+    sizes = np.abs(rates)
+    scale = float(np.median(sizes[sizes > 0.0]))
+    f = np.clip(rates / scale, -HUGE, HUGE)
     blur = min(float(view.accuracy[j]) / scale, MOST_BLUR)
 
     def f_at(points: Array) -> Array:
-        return np.asarray(rates_at(view, points)[..., j] / scale)
+        return np.clip(rates_at(view, points)[..., j] / scale, -HUGE, HUGE)
 
     def crossings(starts: Array) -> Array:
         return _saddles(view, starts, nodes, j, scale * max(TOUCH, blur))
