@@ -30,6 +30,15 @@ ONSET = behavior(
 """The Hopf normal form: a cycle of radius sqrt(mu + 0.15), period 2 pi, from mu = -0.15 on."""
 
 
+MIRROR = behavior("mirror", (X,), ("mu mu mul x x mul sub",), (MU,))
+"""x' = mu² - x²: branches x = mu and x = -mu cross at 0, and look as if they came and went."""
+
+SIZE = "x x mul y y mul add"
+PUSH = f"mu {SIZE} add {SIZE} {SIZE} mul sub"
+TWO_CYCLES = behavior("two cycles", (X, Y), (f"{PUSH} x mul y sub", f"{PUSH} y mul x add"), (MU,))
+"""r' = mu r + r³ - r⁵: a fold of cycles at mu = -1/4, a subcritical Hopf at 0 (section 8.2)."""
+
+
 def claim(feature: str, least: int = 1, most: int | None = 1, **changes: object) -> Claim:
     plain = Claim(
         text=feature,

@@ -14,13 +14,19 @@ import numpy as np
 from runtime.arrays import Array, frozen
 from verifier.topology.claim_words import described_cycle
 from verifier.topology.continuation import Change
-from verifier.topology.features import AxisRange, FixedPoint, PointKind, Portrait
+from verifier.topology.features import AxisRange, Cycle, FixedPoint, PointKind, Portrait, Stability
 
 NEAR_EDGE: Final = 0.01
 """A point this close to the domain's edge, in widths, left through it."""
 
+MOST_AHEAD: Final = 0.15
+"""A point moves no further along its tangent than this, in widths: folds have steep ones."""
+
 TOGETHER: Final = 0.2
 """Features that meet are this close on either side, in widths."""
+
+DOUBLE: Final = 0.02
+"""How far periods may be off where one is twice the other, relatively: they change on the way."""
 
 NOT_HYPERBOLIC: Final = frozenset({PointKind.DEGENERATE, PointKind.CENTER})
 
@@ -54,9 +60,18 @@ def growing_directions(point: FixedPoint, portrait: Portrait) -> int:
     return sum(value.real > 0.0 for value in point.eigenvalues)
 
 
-def difference(below: Portrait, above: Portrait) -> Difference:
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Steps:
+    """How far the points of two portraits move between them, along their tangents: (k, m) each."""
+
+    old: Array
+    new: Array
+
+
+def difference(below: Portrait, above: Portrait, steps: Steps | None = None) -> Difference:
     """What happens between the two, from the lower to the higher value of the control."""
-    points = _of_points(below, above)
+    points = _of_points(below, above, steps)
     if points is not None:
         return points
     cycles = _of_cycles(below, above)
@@ -66,14 +81,27 @@ def difference(below: Portrait, above: Portrait) -> Difference:
     return Difference(Change.OTHER, centre, "no feature comes, goes or changes", is_none=True)
 
 
-def _of_points(below: Portrait, above: Portrait) -> Difference | None:
-    pairs, gone, new = matched(below.axes, below.fixed_points, above.fixed_points)
-    changed = [
+def exchanged(below: Portrait, above: Portrait, steps: Steps) -> bool:
+    """Whether points change their stability, although none comes or goes."""
+    pairs, gone, new = matched(below.axes, below.fixed_points, above.fixed_points, steps)
+    return not gone and not new and len(_changed(below, above, pairs)) > 0
+
+
+def _changed(
+    below: Portrait, above: Portrait, pairs: list[tuple[int, int]]
+) -> list[tuple[FixedPoint, FixedPoint]]:
+    """The pairs of points of which another number of directions grows."""
+    return [
         (below.fixed_points[i], above.fixed_points[j])
         for i, j in pairs
         if growing_directions(below.fixed_points[i], below)
         != growing_directions(above.fixed_points[j], above)
     ]
+
+
+def _of_points(below: Portrait, above: Portrait, steps: Steps | None) -> Difference | None:
+    pairs, gone, new = matched(below.axes, below.fixed_points, above.fixed_points, steps)
+    changed = _changed(below, above, pairs)
     extra = [below.fixed_points[i] for i in gone] + [above.fixed_points[j] for j in new]
     if len(extra) == 2 and len(gone) in {0, 2}:
         return _pair(below.axes, extra, changed, comes=not gone)
@@ -128,10 +156,17 @@ def _of_cycles(below: Portrait, above: Portrait) -> Difference | None:
         if abs(len(old) - len(new)) == 2:
             at = frozen(more[0].points[0])
             return Difference(Change.CYCLES_MEET, at, f"two cycles {verb}")
-        fewer = {round(c.period, 9) for c in (old if more is new else new)}
-        lone = max(more, key=lambda c: min((abs(c.period - p) for p in fewer), default=1.0))
-        verb = "begins" if more is new else "ends"
-        about = f"a {described_cycle(axes, lone)} {verb}"
+        fewer = old if more is new else new
+        periods = {round(c.period, 9) for c in fewer}
+        lone = max(more, key=lambda c: min((abs(c.period - p) for p in periods), default=1.0))
+        kept = [c for c in more if c is not lone]
+        if lone.stability is Stability.SEMI_STABLE:
+            at = frozen(lone.points[0])
+            return Difference(Change.CYCLES_MEET, at, f"a stable and an unstable cycle {verb}")
+        about = f"a {described_cycle(axes, lone)} {'begins' if more is new else 'ends'}"
+        if _is_doubled(lone, kept, fewer):
+            about = f"{about}, of twice the period of one beside it"
+            return Difference(Change.PERIOD_DOUBLING, frozen(lone.points[0]), about)
         return Difference(Change.CYCLE_ENDS, frozen(lone.points[0]), about)
     for before, after in zip(old, new, strict=True):
         if before.stability is not after.stability:
@@ -140,12 +175,37 @@ def _of_cycles(below: Portrait, above: Portrait) -> Difference | None:
     return None
 
 
+def _is_doubled(lone: Cycle, kept: list[Cycle], before: tuple[Cycle, ...]) -> bool:
+    """Whether a cycle turns twice where another one, that changes its stability, turns once."""
+    return any(
+        abs(lone.period - 2.0 * after.period) < DOUBLE * lone.period
+        and abs(after.period - then.period) < DOUBLE * after.period
+        and after.stability is not then.stability
+        for after in kept
+        for then in before
+    )
+
+
 def matched(
-    axes: tuple[AxisRange, ...], old: tuple[FixedPoint, ...], new: tuple[FixedPoint, ...]
+    axes: tuple[AxisRange, ...],
+    old: tuple[FixedPoint, ...],
+    new: tuple[FixedPoint, ...],
+    steps: Steps | None = None,
 ) -> tuple[list[tuple[int, int]], list[int], list[int]]:
-    """Pairs of nearest points, the closest first; then the rest of either side."""
+    """Pairs of nearest points, the closest first; then the rest of either side.
+
+    With `steps` nearest to where the tangents of both lead: branches that cross are told apart.
+    """
+    ahead = _limited(axes, steps or Steps(np.zeros((len(old), 1)), np.zeros((len(new), 1))))
     distances = sorted(
-        (_distance(axes, a.at, b.at), i, j)
+        (
+            max(
+                _distance(axes, a.at + ahead.old[i], b.at),
+                _distance(axes, a.at, b.at - ahead.new[j]),
+            ),
+            i,
+            j,
+        )
         for (i, a), (j, b) in product(enumerate(old), enumerate(new))
     )
     pairs: list[tuple[int, int]] = []
@@ -156,6 +216,19 @@ def matched(
     gone = [i for i in range(len(old)) if all(i != k for k, _ in pairs)]
     come = [j for j in range(len(new)) if all(j != n for _, n in pairs)]
     return pairs, gone, come
+
+
+def _limited(axes: tuple[AxisRange, ...], steps: Steps) -> Steps:
+    """The steps, shortened to `MOST_AHEAD`; none where there is no tangent."""
+    width = np.array([axis.width for axis in axes])
+
+    def short(step: Array) -> Array:
+        with np.errstate(all="ignore"):
+            size = np.max(np.abs(step) / width, axis=-1, keepdims=True, initial=0.0)
+            shorter = step * np.minimum(1.0, MOST_AHEAD / size)
+        return np.where(np.isfinite(size) & (size > 0.0), shorter, 0.0)
+
+    return Steps(short(steps.old), short(steps.new))
 
 
 def _distance(axes: tuple[AxisRange, ...], a: Array, b: Array) -> float:

@@ -2,11 +2,13 @@
 
 Portraits are made at even values of the control; features of neighbours are matched by place, those
 that are left begin or end a branch. Between neighbours that differ the bifurcation is located by
-bisection, and portraits on both sides of it are added, so that branches reach it. S: samples.
+bisection, and portraits on both sides of it are added, so that branches reach it. Where two
+branches cross, as their tangents show, the same is done, although there are as many points of each
+type on both sides. S: samples.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, final
 
@@ -14,12 +16,32 @@ import numpy as np
 
 from runtime.arrays import Array, frozen
 from runtime.program import Control, Program
-from verifier.topology.bifurcations import matched, signature
-from verifier.topology.boundaries import COARSE, Bracket, explained, narrowed
+from verifier.topology.bifurcations import (
+    Difference,
+    Steps,
+    difference,
+    exchanged,
+    signature,
+)
+from verifier.topology.boundaries import (
+    BIRTH,
+    CLOSE,
+    COARSE,
+    Bracket,
+    explained,
+    hyperbolic,
+    narrowed,
+)
+from verifier.topology.branch_lines import cycle_branches, point_branches
 from verifier.topology.claim_at import Scenes
-from verifier.topology.continuation import Bifurcation, Branches, CycleBranch, PointBranch
-from verifier.topology.features import Cycle, FixedPoint, Portrait
+from verifier.topology.continuation import (
+    Bifurcation,
+    Branches,
+    Change,
+)
+from verifier.topology.features import Portrait
 from verifier.topology.slices import SliceError
+from verifier.topology.tangents import tangents
 
 SAMPLES: Final = 33
 """Values of the control at which portraits are made, at first."""
@@ -30,8 +52,11 @@ NUDGE: Final = 0.0314
 BESIDE: Final = (0.0, 0.04, 0.25)
 """Where portraits are added beside a bifurcation, as shares of the gap to the next value."""
 
-LIKE: Final = 0.25
-"""Two cycles of neighbours whose swings and periods differ by less, relatively, are one."""
+UNEVEN: Final = 0.4812
+"""Where an interval is cut: not in its middle, which is a bifurcation more often than not."""
+
+BIRTHS: Final = frozenset({Change.HOPF, Change.PERIOD_DOUBLING})
+"""Where a cycle is born, too small to be seen at first."""
 
 MOST_BETWEEN: Final = 4
 """Bifurcations that are told apart between two neighbours."""
@@ -55,7 +80,7 @@ def find_branches(
     low, high = limits or (part.low, part.high)
     line = _Line(program, control, dict(held), (low, high), part.high - part.low)
     values = line.regular(np.linspace(low, high, samples))
-    found = [one for a, b in pairwise(values) for one in line.between(a, b)]
+    found = line.bifurcations(values)
     places = sorted({*values, *(v for one in found for v in one.sides)})
     portraits = [line.everything(value) for value in places]
     first = portraits[0]
@@ -69,8 +94,8 @@ def find_branches(
         axes=first.axes,
         held=tuple(one for one in first.held if one.name != control),
         values=frozen(values),
-        points=_point_branches(places, portraits),
-        cycles=_cycle_branches(places, portraits),
+        points=point_branches(places, portraits, line.steps),
+        cycles=cycle_branches(places, portraits),
         bifurcations=tuple(one.bifurcation for one in found),
         notes=tuple(dict.fromkeys(note for seen in portraits for note in seen.notes)),
     )
@@ -100,10 +125,11 @@ def _control(
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Found:
-    """A bifurcation, and values of the control close to it on both sides."""
+    """A bifurcation, values close to it on both sides, and the ends of where it is."""
 
     bifurcation: Bifurcation
     sides: tuple[float, ...]
+    ends: tuple[float, float]
 
 
 @final
@@ -123,6 +149,7 @@ class _Line:
         self._held = tuple(held.items())
         self._limits = limits
         self._span = span
+        self._moving: dict[float, Array] = {}
 
     def points(self, value: float) -> Portrait:
         """The portrait at a value, without cycles; at the nearest limit beyond them."""
@@ -138,35 +165,105 @@ class _Line:
         last = float(values[-1])
         return [
             value + (step if value < last else -step)
-            if -1 in signature(self.points(value))[0]
+            if -1 in signature(self.everything(value))[0]
             else value
             for value in values.tolist()
         ]
 
-    def between(self, low: float, high: float) -> list[_Found]:
-        """The bifurcations between two values, in their order."""
-        found: list[_Found] = []
-        before, after = low, high
-        for _ in range(MOST_BETWEEN):
-            if signature(self.everything(low)) == signature(self.everything(high)):
+    def steps(self, low: float, high: float) -> Steps:
+        """How far the points at two values move between them, along their tangents."""
+        return Steps(*((high - low) * self._tangents(value) for value in (low, high)))
+
+    def bifurcations(self, values: list[float]) -> list[_Found]:
+        """The bifurcations between the values, in their order: of points first, then of cycles."""
+        found = [one for a, b in pairwise(values) for one in self._of_points(a, b, MOST_BETWEEN)]
+        for a, b in pairwise(values):
+            inside = [one for one in found if a < one.ends[0] and one.ends[1] < b]
+            lows = [a, *(one.ends[1] for one in inside)]
+            highs = [*(one.ends[0] for one in inside), b]
+            for low, high in zip(lows, highs, strict=True):
+                found += self._of_cycles(low, high, found, (a, b))
+        return sorted(found, key=lambda one: one.bifurcation.value)
+
+    def _of_points(self, low: float, high: float, depth: int) -> list[_Found]:
+        """The bifurcations of fixed points between two values."""
+        if signature(self.points(low))[0] != signature(self.points(high))[0]:
+            where, why = explained(Bracket(low, high), self._span, self.points, self.points)
+        elif self._exchanged(low, high):
+            where = self._crossing(Bracket(low, high))
+            if where.high - where.low > 4.0 * CLOSE * self._span:
+                return []
+            where = hyperbolic(where, CLOSE * self._span, self.points)
+            ends = (self.points(where.low), self.points(where.high))
+            why = difference(*ends, self.steps(where.low, where.high))
+        else:
+            return []
+        if why.is_none or depth == 0:
+            return []
+        one = self._found(where, why, low, high)
+        before = self._of_points(low, where.low, depth - 1) if low < where.low else []
+        after = self._of_points(where.high, high, depth - 1) if where.high < high else []
+        return [*before, one, *after]
+
+    def _of_cycles(
+        self, low: float, high: float, found: list[_Found], ends: tuple[float, float]
+    ) -> list[_Found]:
+        """The bifurcations of cycles between two values that no bifurcation of points parts."""
+        low, high = (self._past_births(low, found, 1.0), self._past_births(high, found, -1.0))
+        if low >= high:
+            return []
+        kinds = [signature(self.everything(value))[1] for value in (low, high)]
+        if kinds[0] == kinds[1]:
+            return []
+        bracket = narrowed(
+            Bracket(low, high), lambda v: signature(self.everything(v))[1], COARSE * self._span
+        )
+        where, why = explained(bracket, self._span, self.points, self.everything)
+        known = any(abs(where.middle - one.bifurcation.value) < BIRTH * self._span for one in found)
+        if why.is_none or (known and why.change in BIRTHS):
+            return []
+        return [self._found(where, why, *ends)]
+
+    def _past_births(self, value: float, found: list[_Found], side: float) -> float:
+        """The value, or beside it where cycles are too small to be seen that were just born."""
+        for one in found:
+            born = one.bifurcation.change in BIRTHS
+            if born and abs(one.bifurcation.value - value) < BIRTH * self._span:
+                return one.bifurcation.value + side * BIRTH * self._span
+        return value
+
+    def _exchanged(self, low: float, high: float) -> bool:
+        return exchanged(self.points(low), self.points(high), self.steps(low, high))
+
+    def _crossing(self, bracket: Bracket) -> Bracket:
+        """The bracket by bisection where points exchange their stability; wide if none do."""
+        while bracket.high - bracket.low > CLOSE * self._span:
+            width = bracket.high - bracket.low
+            middle = bracket.low + UNEVEN * width
+            if -1 in signature(self.points(middle))[0]:
+                return Bracket(middle - CLOSE * self._span, middle + CLOSE * self._span)
+            if self._exchanged(bracket.low, middle):
+                bracket = Bracket(bracket.low, middle)
+            elif self._exchanged(middle, bracket.high):
+                bracket = Bracket(middle, bracket.high)
+            else:
                 break
-            bracket = Bracket(low, high)
-            if signature(self.points(low))[0] == signature(self.points(high))[0]:
-                bracket = narrowed(
-                    bracket, lambda v: signature(self.everything(v)), COARSE * self._span
-                )
-            where, why = explained(bracket, self._span, self.points, self.everything)
-            if why.is_none:
-                break
-            within = 0.5 * (where.high - where.low)
-            # A cycle that is born is seen a little later: that is no other bifurcation.
-            if not found or abs(where.middle - found[-1].bifurcation.value) > 3.0 * within:
-                one = Bifurcation(why.change, where.middle, within, why.at, why.about)
-                found.append(_Found(one, self._beside(where, before, after)))
-            low = max(bracket.high if bracket.high < high else where.high, where.high)
-            if low >= high:
-                break
-        return found
+        return bracket
+
+    def _found(self, where: Bracket, why: Difference, low: float, high: float) -> _Found:
+        within = 0.5 * (where.high - where.low)
+        one = Bifurcation(why.change, where.middle, within, why.at, why.about)
+        return _Found(one, self._beside(where, low, high), (where.low, where.high))
+
+    def _tangents(self, value: float) -> Array:
+        if value not in self._moving:
+            settings = {**dict(self._held), self._control: value}
+            axes = self._scenes.axes(tuple(settings.items()))
+            seen = self.points(value)
+            self._moving[value] = tangents(
+                self._scenes.program, axes, settings, self._control, seen
+            )
+        return self._moving[value]
 
     def _beside(self, where: Bracket, before: float, after: float) -> tuple[float, ...]:
         """Values on both sides of a bifurcation, the closer the more of them: branches bend."""
@@ -177,75 +274,3 @@ class _Line:
     def _at(self, value: float, *, cycles: bool) -> Portrait:
         inside = min(max(value, self._limits[0]), self._limits[1])
         return self._scenes.at((*self._held, (self._control, inside)), cycles=cycles, basins=False)
-
-
-@final
-@dataclass(slots=True)
-class _Growing:
-    """A branch under way: the values of the control, and what was found there."""
-
-    values: list[float] = field(default_factory=list)
-    points: list[FixedPoint] = field(default_factory=list)
-    cycles: list[Cycle] = field(default_factory=list)
-
-
-def _point_branches(values: list[float], portraits: list[Portrait]) -> tuple[PointBranch, ...]:
-    open_ones: list[_Growing] = []
-    done: list[_Growing] = []
-    for value, seen in zip(values, portraits, strict=True):
-        last = tuple(branch.points[-1] for branch in open_ones)
-        pairs, gone, new = matched(seen.axes, last, seen.fixed_points)
-        done += [open_ones[i] for i in gone]
-        kept = []
-        for i, j in sorted(pairs):
-            open_ones[i].values.append(value)
-            open_ones[i].points.append(seen.fixed_points[j])
-            kept.append(open_ones[i])
-        open_ones = kept + [_Growing([value], [seen.fixed_points[j]]) for j in new]
-    return tuple(
-        PointBranch(
-            frozen(branch.values),
-            frozen(np.array([point.at for point in branch.points])),
-            tuple(point.kind for point in branch.points),
-        )
-        for branch in (*done, *open_ones)
-    )
-
-
-def _cycle_branches(values: list[float], portraits: list[Portrait]) -> tuple[CycleBranch, ...]:
-    open_ones: list[_Growing] = []
-    done: list[_Growing] = []
-    for value, seen in zip(values, portraits, strict=True):
-        width = np.array([axis.width for axis in seen.axes])
-        free = list(seen.cycles)
-        kept = []
-        for branch in open_ones:
-            before = branch.cycles[-1]
-            unlike = [_unlike(before, cycle, width) for cycle in free]
-            if not free or min(unlike) > LIKE:
-                done.append(branch)
-                continue
-            nearest = free.pop(unlike.index(min(unlike)))
-            branch.values.append(value)
-            branch.cycles.append(nearest)
-            kept.append(branch)
-        open_ones = kept + [_Growing([value], cycles=[cycle]) for cycle in free]
-    return tuple(_finished(branch) for branch in (*done, *open_ones))
-
-
-def _unlike(a: Cycle, b: Cycle, width: Array) -> float:
-    """How different two cycles are: in reach, in widths, and in period, relatively."""
-    low = np.abs(a.points.min(axis=0) - b.points.min(axis=0)) / width
-    high = np.abs(a.points.max(axis=0) - b.points.max(axis=0)) / width
-    period = abs(a.period - b.period) / max(a.period, b.period)
-    return float(max(low.max(), high.max(), 0.5 * period))
-
-
-def _finished(branch: _Growing) -> CycleBranch:
-    return CycleBranch(
-        values=frozen(branch.values),
-        lows=frozen(np.array([cycle.points.min(axis=0) for cycle in branch.cycles])),
-        highs=frozen(np.array([cycle.points.max(axis=0) for cycle in branch.cycles])),
-        periods=frozen([cycle.period for cycle in branch.cycles]),
-        stabilities=tuple(cycle.stability for cycle in branch.cycles),
-    )
