@@ -414,6 +414,11 @@ def test_henons_map_settles_on_an_orbit_of_four() -> None:
     assert [len(cycle.points) - 1 for cycle in stable] == [4]
 
 
+@pytest.mark.parametrize("damping", [1e-3, 1e-4, 1e-5, -1e-5])
+def test_a_focus_that_hardly_attracts_or_repels_has_no_cycle(damping: float) -> None:
+    assert cycles_of(plane("y", f"x neg {damping!r} y mul sub"), ORIGIN) == ()
+
+
 def test_steps_of_half_a_turn_have_one_derivative_on_both_sides() -> None:
     """The angle goes on by pi + 0.3 sin(2 angle): 0, pi and pi/2, -pi/2 are orbits of two."""
     angle = state("angle", -math.pi, math.pi, kind=Kind.PERIODIC)

@@ -18,7 +18,7 @@ from verifier.topology.map_cycles import find_map_cycles
 from verifier.topology.motion import moved, pace
 from verifier.topology.return_maps import Candidate, scan
 from verifier.topology.sections import Section
-from verifier.topology.shooting import SEGMENTS, TOLERANCE, Closed, closed, segments
+from verifier.topology.shooting import CLOSED, SEGMENTS, TOLERANCE, Closed, closed, segments
 from verifier.topology.slices import Slice, shortest, wrapped
 
 DIRECTIONS: Final = (0.35, 2.44, 4.53)
@@ -38,6 +38,9 @@ PERIODS: Final = 1e-7
 
 NEUTRAL: Final = 1e-6
 """How far the logarithm of a multiplier may be off where the field is exact."""
+
+SURE: Final = 100.0
+"""How many times larger than what its gap leaves open a cycle must be."""
 
 FINE: Final = 256
 """Parts of a segment at which a cycle is looked at before it is thinned."""
@@ -192,6 +195,8 @@ def _cycle(view: Slice, found: Closed, *, touching: bool) -> Cycle | None:
     times, points = _drawn(view, found)
     if not np.all(np.isfinite(points)) or not np.all(np.isfinite([*values, *second])):
         return None
+    if not (touching or found.turns.any()) and _is_point(view, points, values):
+        return None
     turns, period = found.turns, float(abs(found.period))
     if found.period < 0.0:
         values, second, turns = inverted(values), inverted(second), -turns
@@ -209,6 +214,17 @@ def _cycle(view: Slice, found: Closed, *, touching: bool) -> Cycle | None:
         turns=tuple(int(turn) for turn in turns),
         modes=(),
     )
+
+
+def _is_point(view: Slice, points: Array, values: tuple[complex, ...]) -> bool:
+    """Whether a closed path is not known to be away from a fixed point that it goes round.
+
+    Round a focus that hardly attracts every small path closes as far as numbers tell: a gap of
+    `CLOSED` leaves a cycle open by that gap divided by |1 - multiplier|.
+    """
+    slowest = min(abs(1.0 - value) for value in values)
+    size = float(np.ptp(points / view.width, axis=0).max())
+    return size * slowest < SURE * CLOSED
 
 
 def _within(view: Slice, points: Array) -> Array:
