@@ -76,7 +76,7 @@ def _among_points(
     """What happens to the fixed points within the bracket, and where."""
     if signature(points_at(bracket.low))[0] == signature(points_at(bracket.high))[0]:
         return None
-    narrow = hyperbolic(
+    narrow = _hyperbolic(
         narrowed(bracket, lambda value: signature(points_at(value))[0], CLOSE * span),
         CLOSE * span,
         points_at,
@@ -85,7 +85,7 @@ def _among_points(
     return None if found.is_none else (narrow, found)
 
 
-def hyperbolic(bracket: Bracket, step: float, points_at: Look) -> Bracket:
+def _hyperbolic(bracket: Bracket, step: float, points_at: Look) -> Bracket:
     """The bracket, widened until the types of all points are decided at both ends.
 
     Near a bifurcation they are not: the tables are not that exact.
@@ -98,5 +98,5 @@ def hyperbolic(bracket: Bracket, step: float, points_at: Look) -> Bracket:
             high += step
         else:
             break
-        step *= 2.0
+        step *= 1.5
     return Bracket(low, high)

@@ -29,7 +29,6 @@ from verifier.topology.boundaries import (
     COARSE,
     Bracket,
     explained,
-    hyperbolic,
     narrowed,
 )
 from verifier.topology.branch_lines import cycle_branches, point_branches
@@ -51,6 +50,9 @@ NUDGE: Final = 0.0314
 
 BESIDE: Final = (0.0, 0.04, 0.25)
 """Where portraits are added beside a bifurcation, as shares of the gap to the next value."""
+
+CROSSING: Final = 1e-4
+"""How closely branches that cross must be told apart, as a share of the control's domain."""
 
 UNEVEN: Final = 0.4812
 """Where an interval is cut: not in its middle, which is a bifurcation more often than not."""
@@ -190,10 +192,10 @@ class _Line:
         if signature(self.points(low))[0] != signature(self.points(high))[0]:
             where, why = explained(Bracket(low, high), self._span, self.points, self.points)
         elif self._exchanged(low, high):
-            where = self._crossing(Bracket(low, high))
-            if where.high - where.low > 4.0 * CLOSE * self._span:
+            crossing = self._around(self._crossing(Bracket(low, high)), low, high)
+            if crossing is None:
                 return []
-            where = hyperbolic(where, CLOSE * self._span, self.points)
+            where = crossing
             ends = (self.points(where.low), self.points(where.high))
             why = difference(*ends, self.steps(where.low, where.high))
         else:
@@ -238,10 +240,9 @@ class _Line:
     def _crossing(self, bracket: Bracket) -> Bracket:
         """The bracket by bisection where points exchange their stability; wide if none do."""
         while bracket.high - bracket.low > CLOSE * self._span:
-            width = bracket.high - bracket.low
-            middle = bracket.low + UNEVEN * width
+            middle = bracket.low + UNEVEN * (bracket.high - bracket.low)
             if -1 in signature(self.points(middle))[0]:
-                return Bracket(middle - CLOSE * self._span, middle + CLOSE * self._span)
+                return Bracket(middle, middle)
             if self._exchanged(bracket.low, middle):
                 bracket = Bracket(bracket.low, middle)
             elif self._exchanged(middle, bracket.high):
@@ -249,6 +250,20 @@ class _Line:
             else:
                 break
         return bracket
+
+    def _around(self, bracket: Bracket, low: float, high: float) -> Bracket | None:
+        """The bracket, widened until what happens shows at its ends; None where nothing does.
+
+        Where two points nearly touch, their types are not decided.
+        """
+        step = CLOSE * self._span
+        while bracket.high - bracket.low < CROSSING * self._span:
+            bracket = Bracket(max(bracket.low - step, low), min(bracket.high + step, high))
+            kinds = [signature(self.points(end))[0] for end in (bracket.low, bracket.high)]
+            if -1 not in (*kinds[0], *kinds[1]) and self._exchanged(bracket.low, bracket.high):
+                return bracket
+            step *= 2.0
+        return None
 
     def _found(self, where: Bracket, why: Difference, low: float, high: float) -> _Found:
         within = 0.5 * (where.high - where.low)
