@@ -94,7 +94,8 @@ def _contract(
     after = m
     for _ in range(d):
         after *= taps
-    work[0, :after] = source[:after]
+    for i in range(after):
+        work[0, i] = source[i]
     for a in range(d):
         after //= taps
         rows, size = _weigh(cubic, a == slope, t[a, 0], t[a, 1], w)

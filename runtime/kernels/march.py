@@ -154,7 +154,7 @@ def _runge_kutta_step(tape: Tape, w: Array, at: Places, moving: Integers, lanes:
         run(tape, w, lanes)
         k = at.k + min(stage, 1) * at.n
         take_rates(tape, w, k, lanes)
-        weight = 1.0 / 6.0 if stage in {0, 3} else 1.0 / 3.0
+        weight = 1.0 / 3.0 if 0 < stage < 3 else 1.0 / 6.0
         reach = 1.0 if stage == 2 else 0.5
         for j in range(moving.shape[0]):
             i = moving[j]
