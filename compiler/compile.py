@@ -44,10 +44,16 @@ from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Form, Formula, Step
 from spec_schema.field_modes import Modes
 from spec_schema.load import Loaded, examine
+from spec_schema.places import Path as KeyPath
 
 Judge: TypeAlias = Callable[[Program], tuple[str, ...]]
 
 MENDED_BY_CODE = {"S241", "S242", "S245"}  # a formula that is kept as code needs no table
+SMOOTHER = (
+    "draw smoother: round a polygon's corners more (`rounding: 0.6`), let neighboring edges take "
+    "more even times, and features stand further apart; or loosen `table: tolerance`, or raise "
+    "`table: budget`"
+)
 TIGHTENINGS = 3  # how often the tables are made again, finer, for the fidelity horizon
 
 
@@ -173,6 +179,8 @@ def _with_tables(
         remedy = error.remedy
         if field.formula is not None and error.code in MENDED_BY_CODE:
             remedy += "; or keep the formula as code: `table: {keep: code}`"
+        if checked.design is not None:
+            remedy = SMOOTHER
         findings.error(error.code, _path_of(error, checked), error.message, remedy, key=True)
     except ModuleError as error:
         findings.error("S233", ("field", "module", "call"), error.message, error.remedy)
@@ -225,8 +233,10 @@ def _place_of_rates(form: Form) -> tuple[tuple[str, ...], bool]:
             return ("field", "modes"), False
 
 
-def _path_of(error: TableError, checked: Checked) -> tuple[str, ...]:
-    """The declaration of the axis at fault, else the field."""
+def _path_of(error: TableError, checked: Checked) -> KeyPath:
+    """The declaration of the axis at fault, else the field; of a sketch, itself."""
+    if checked.design is not None:
+        return SKETCH
     if error.axis is None:
         return ("field",)
     return ("state" if error.axis in checked.spec.state else "control", error.axis)

@@ -8,11 +8,13 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.lower_parts import code_of
 from compiler.sketch.algebra import plus, scaled, with_constants
-from compiler.sketch.curves import TURN, Curve
+from compiler.sketch.curves import Curve
 from compiler.sketch.design import Design, Node, Ridge
 from compiler.sketch.drawing import Orbit, Pair
 from compiler.sketch.fill import curves_of, edge_times
 from compiler.sketch.frame import Frame
+from compiler.sketch.pacing import TURN
+from compiler.sketch.ridges import on_ridge
 from runtime.arrays import Array
 from runtime.code import Code
 from runtime.program import Claim, Place, Reach
@@ -77,7 +79,8 @@ def sketch_claims(design: Design, loaded: Loaded) -> tuple[Claim, ...]:
         places = _places(node.point.at, design.frame)
         found.append(told(_sentence(node), feature, node.point.path, places=places))
     for ridge in design.ridges:
-        places = _places(design.frame.place(ridge.saddle), design.frame)
+        saddle = design.frame.place(on_ridge(ridge.through, ridge.saddle))
+        places = _places(saddle, design.frame)
         found.append(told(_on_ridge(ridge), "saddle", ridge.line.path, places=places))
     for orbit, centre, curve in _orbits(design):
         feature = "stable cycle" if orbit.attracts else "unstable cycle"

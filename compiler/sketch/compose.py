@@ -20,7 +20,6 @@ from compiler.sketch.polygons import (
     sees_all,
     viewpoint,
 )
-from compiler.sketch.ridges import on_ridge
 from runtime.arrays import Array
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.tree import Expr
@@ -242,7 +241,16 @@ def _ridge(line: Line, frame: Frame) -> Ridge:
         remedy = "let its points advance from one end to the other"
         raise SketchRefusedError("S265", line.path, message, remedy)
     saddle = (through[0] + through[-1]) / 2 if line.saddle is None else frame.spot(line.saddle).at
-    return Ridge(line, through, on_ridge(through, saddle))
+    return Ridge(line, through, _on_polyline(through, saddle))
+
+
+def _on_polyline(through: Array, saddle: Array) -> Array:
+    """The place of the polyline that is right beside the saddle: near that on the curve."""
+    chord = (through[-1] - through[0]) / np.linalg.norm(through[-1] - through[0])
+    s = (through - through[0]) @ chord
+    at = float((saddle - through[0]) @ chord)
+    found = [np.interp(at, s, through[:, axis]) for axis in (0, 1)]
+    return np.array(found)
 
 
 def _refuse_coincidences(

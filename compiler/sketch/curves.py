@@ -11,14 +11,12 @@ from typing import Final, final
 import numpy as np
 import scipy  # its parts are loaded when they are first used; most specs need none
 
+from compiler.sketch.pacing import TURN, even_paces, timed_paces
 from compiler.sketch.polygons import area
 from runtime.arrays import Array
 
 GRID: Final = 4_096
 """Angles at which a curve is known; a cubic spline joins them."""
-HANDOVER: Final = 0.12
-"""Half the width in which one edge's pace hands over to the next, as a share of the edges."""
-TURN: Final = 2.0 * np.pi
 
 
 @final
@@ -59,8 +57,8 @@ def curve_through(
 ) -> Curve:
     """The curve through vertices (V, 2) that the centre sees: a polygon if it has a rounding.
 
-    seconds: (V,) an example of the times from each vertex to the next, at which the period comes
-    out exactly; None where all edges take times as their lengths.
+    seconds: (S, V) examples of the times from each vertex to the next, the controls' defaults
+    first; None where one period is all there is.
     """
     rays = vertices - centre
     direction = float(np.sign(area(vertices)))
@@ -72,12 +70,11 @@ def curve_through(
     else:
         radius = _spline(_polygon(rays, starts, t, rounding, direction))
     length = np.hypot(radius(t), radius(t, 1))
-    windows = _windows(starts, t)
-    paces = windows * (windows * length[:, np.newaxis]).mean(axis=0) * TURN / length[:, np.newaxis]
-    shares = paces if seconds is not None else paces.sum(axis=1, keepdims=True)
-    example = seconds if seconds is not None else np.array([1.0])
-    taken = np.mean(1.0 / (shares @ (1.0 / example))) * TURN
-    paces = paces * (taken / example.sum())
+    paces = (
+        even_paces(length, starts, t)
+        if seconds is None
+        else timed_paces(length, starts, t, seconds)
+    )
     return Curve(
         radius,
         _spline(paces),
@@ -87,13 +84,6 @@ def curve_through(
         float(radius(t).min()),
         float(radius(t).max()),
     )
-
-
-def smooth_step(x: Array) -> Array:
-    """0 below 0, 1 above 1, four times differentiable between."""
-    x = np.clip(x, 0.0, 1.0)
-    step: Array = x**5 * (126.0 - 420.0 * x + 540.0 * x**2 - 315.0 * x**3 + 70.0 * x**4)
-    return step
 
 
 def _spline(values: Array) -> "scipy.interpolate.CubicSpline":
@@ -110,21 +100,6 @@ def _periodic(starts: Array, values: Array) -> "scipy.interpolate.CubicSpline":
 def _spans(starts: Array) -> Array:
     """How far (V,) it is from each vertex to the next."""
     return np.diff(np.append(starts, TURN))
-
-
-def _windows(starts: Array, t: Array) -> Array:
-    """How much (T, V) the pace of each edge counts; 1 in all."""
-    spans = _spans(starts)
-    halves = HANDOVER * np.minimum(spans, np.roll(spans, 1))
-    found = []
-    for start, span, half, following in zip(
-        starts, spans, halves, np.roll(halves, -1), strict=True
-    ):
-        along = np.mod(t - start + half, TURN) - half
-        rise = smooth_step((along + half) / (2.0 * half))
-        fall = smooth_step((along - span + following) / (2.0 * following))
-        found.append(rise * (1.0 - fall))
-    return np.stack(found, axis=1)
 
 
 def _about(t: Array, start: float) -> Array:

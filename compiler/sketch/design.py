@@ -30,7 +30,7 @@ class Node:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Ridge:
-    """A separatrix. through: (V, 2) in the frame; saddle: (2,)."""
+    """A separatrix. through: (V, 2) in the frame; saddle: (2,), on the polyline or beside it."""
 
     line: Line
     through: Array

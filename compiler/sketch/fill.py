@@ -6,6 +6,7 @@ that only what moves within the frame costs the tables an axis.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Final, final
 
 import numpy as np
@@ -27,12 +28,15 @@ from compiler.sketch.ridges import ridge_through
 from compiler.sketch.rings import CollarModel, HollowModel, RingModel
 from runtime.arrays import Array
 from spec_schema.expressions.evaluate import evaluate
+from spec_schema.expressions.rewrite import names_in
 from spec_schema.expressions.tree import Apply, Expr, Number
 
 POWERS: Final = (4.0, 6.0, 3.0)
 REACHES: Final = (2.5, 4.0, 1.8)
 CANDIDATES: Final = tuple(zip(POWERS, REACHES, strict=True))
 """How quickly features fade, and how far out the far field begins: ways to fill, best first."""
+MOST_CORNERED: Final = 6
+"""Of so many controls that times depend on, all corners are looked at."""
 
 
 @final
@@ -160,7 +164,7 @@ def curves_of(family: Family, frame: Frame) -> tuple[Curve, ...]:
             mean = inner + ring.share * (outer - inner)
             vertices = family.centre + rays * (mean / outer)[:, np.newaxis]
         rounding = orbit.rounding if orbit.is_polygon else None
-        found.append(curve_through(vertices, family.centre, rounding, _example(orbit, frame)))
+        found.append(curve_through(vertices, family.centre, rounding, _examples(orbit, frame)))
     return tuple(found)
 
 
@@ -175,14 +179,20 @@ def _axis(frame: Frame, axis: int) -> Spot:
     return frame.vector(vector)
 
 
-def _example(orbit: Orbit, frame: Frame) -> Array | None:
-    """The times of the edges at the controls' defaults; None where one period is all there is."""
+def _examples(orbit: Orbit, frame: Frame) -> Array | None:
+    """The times (S, V) of the edges, at samples and corners; None where a period is all."""
     if orbit.period is not None:
         return None
-    seconds = [
-        evaluate(with_constants(t, frame.constants), frame.samples[0]) for t in edge_times(orbit)
+    edges = [with_constants(time, frame.constants) for time in edge_times(orbit)]
+    reads = sorted({name for edge in edges for name in names_in(edge)})
+    corners = product(*(frame.box[name] for name in reads[:MOST_CORNERED]))
+    settings = [
+        *frame.samples,
+        *({**frame.samples[0], **dict(zip(reads, c, strict=False))} for c in corners),
     ]
-    return np.array(seconds)
+    seconds = np.array([[evaluate(edge, values) for edge in edges] for values in settings])
+    usable = np.all(np.isfinite(seconds) & (seconds > 0.0), axis=1)
+    return seconds[usable]
 
 
 def edge_times(orbit: Orbit) -> tuple[Expr, ...]:

@@ -2,7 +2,7 @@
 
 A sketch whose places are expressions of controls moves and stretches with them. Its bounding box
 does, too, so that most features have the same q whatever the controls: they cost no axis of a
-table. Where the frame moves, tables stand over u = q / sqrt(4 + q**2), which stays within (-1, 1).
+table. Where the frame moves, tables stand over u = q / sqrt(16 + q**2), which stays within (-1, 1).
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ from spec_schema.expressions.rewrite import names_in
 from spec_schema.expressions.tree import Expr, Number
 from spec_schema.places import Path
 
-BEND: Final = 2.0
+BEND: Final = 4.0
 """So many half widths of the frame away, u begins to draw the plane together."""
 SAMPLES: Final = 24
 SEED: Final = 3_201

@@ -136,14 +136,14 @@ def _sampler(filled: Filled, columns: tuple[_Column, ...]) -> Sampler:
 
 
 def _straightened(u: Array) -> Array:
-    """Coordinates q of u = q / sqrt(4 + q**2)."""
+    """Coordinates q of u = q / sqrt(16 + q**2)."""
     inner = np.clip(u, SLACK - 1.0, 1.0 - SLACK)
     found: Array = BEND * inner / np.sqrt(1.0 - inner**2)
     return found
 
 
 def _coordinates(frame: Frame, declared: Declarations, origin: str) -> tuple[Coordinate, ...]:
-    """The coordinates u = q / sqrt(4 + q**2) for each axis of the plane."""
+    """The coordinates u = q / sqrt(16 + q**2) for each axis of the plane."""
     taken = set(declared.register)
     found = []
     for axis, state in enumerate(frame.over):

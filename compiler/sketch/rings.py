@@ -14,8 +14,9 @@ from typing import Final, final
 import numpy as np
 
 from compiler.sketch.blend import Blend
-from compiler.sketch.curves import Curve, smooth_step
+from compiler.sketch.curves import Curve
 from compiler.sketch.models import NodeModel, Settings, quarter_turn, saturated
+from compiler.sketch.pacing import smooth_step
 from runtime.arrays import Array, Booleans
 from spec_schema.expressions.tree import Expr
 
@@ -23,11 +24,11 @@ HOLD: Final = 0.2
 """Within so much of a level, the level's own field holds alone."""
 ROOM: Final = 0.8
 """How much of the narrowest gap between two orbits their own neighborhoods may take."""
-AROUND: Final = 0.8
+AROUND: Final = 1.0
 """How far the circle around all is from the outermost orbit, in that orbit's least radius."""
 FADE: Final = 2.0
 """Beyond so many of its radii the field points straight inward or outward."""
-CALM: Final = 1.2
+CALM: Final = 1.8
 """Over so many levels beyond the last orbit the going round comes to rest."""
 NEWTON: Final = 10
 """Newton steps to a place's level; one that leaves the bracket becomes a halving."""

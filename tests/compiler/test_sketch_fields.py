@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from compiler.compile import compile_file, compile_loaded
 from compiler.sketch.index import Item, completed, index_of
+from compiler.sketch.pacing import timed_paces
 from compiler.sketch.ridges import on_ridge, ridge_through
 from runtime.flow import flow_of, rates
 from runtime.integrators import adaptive
@@ -158,6 +159,47 @@ def test_the_saddle_of_a_bent_separatrix_lies_on_it() -> None:
     assert model.distance(saddle[np.newaxis], {}) == pytest.approx(0.0, abs=1e-12)
     assert model.parts(saddle[np.newaxis], {}) == pytest.approx(0.0, abs=1e-12)
     assert np.dot(saddle - near, points[-1] - points[0]) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "at_setting", [(1.2, -1.2, 0.5, 0.5), (1.5, -0.5, 0.2, 0.8), (0.5, -1, 0.8, 0.3)]
+)
+def test_each_edge_of_the_patrol_takes_its_own_time(
+    patrol: Program, at_setting: tuple[float, float, float, float]
+) -> None:
+    x1, x2, v1, v2 = at_setting
+    wanted = [(x1 - x2) / v1, 1.0, (x1 - x2) / v2, 1.0]
+    times = np.linspace(0.0, 1.2 * sum(wanted), 40_001)
+    start, controls = np.array([[x2, v1]]), np.array([at_setting])
+
+    x, v = adaptive(flow_of(patrol), start, controls, times, 1e-9, 1e-9).states[0].T
+
+    # The rounded corners pass beside the vertices, at the same angle about the centre.
+    middle, half = np.array([(x1 + x2) / 2, (v1 - v2) / 2]), np.array([1.1 * (x1 - x2), v1 + v2])
+    theta = np.unwrap(np.arctan2((v - middle[1]) / half[1], (x - middle[0]) / half[0]))
+    corners = np.array([[x2, v1], [x1, v1], [x1, -v2], [x2, -v2], [x2, v1]])
+    at = np.unwrap(np.arctan2(*((corners - middle) / half).T[::-1]))
+    passed = np.interp(at[0] - at, theta[0] - theta, times)
+    assert np.diff(passed) == pytest.approx(wanted, rel=0.025)
+
+
+@given(
+    st.lists(st.floats(0.3, 3.0), min_size=4, max_size=4),
+    st.lists(st.floats(0.3, 2.0), min_size=4, max_size=4),
+)
+@settings(max_examples=30, deadline=None)
+def test_edges_with_one_set_of_times_take_exactly_these(
+    spans: list[float], seconds: list[float]
+) -> None:
+    t = np.linspace(0.0, 2 * np.pi, 4_096, endpoint=False)
+    starts = np.cumsum([0.0, *spans])[:4] * 2 * np.pi / sum(spans)
+
+    paces = timed_paces(1.0 + 0.3 * np.cos(t), starts, t, np.array([seconds]))
+
+    step = (t[1] - t[0]) / (paces @ (1.0 / np.array(seconds)))
+    edge = np.searchsorted(starts, t, side="right") - 1
+    found = [step[edge == k].sum() for k in range(4)]
+    assert found == pytest.approx(seconds, rel=1e-3)
 
 
 def test_a_fill_that_the_judge_never_accepts_is_refused() -> None:
