@@ -94,6 +94,29 @@ def test_what_is_proved_of_a_linear_field_is_so(hundredths: tuple[int, int, int,
             assert not features[finding.claim.feature]
 
 
+def test_a_failure_between_samples_is_found_by_the_proof() -> None:
+    # x' = (mu - 0.508)² - 1e-6 - x² has no fixed point for |mu - 0.508| < 0.001, and the samples
+    # are 1/16 apart: 0.508 lies between them.
+    narrow = "mu 0.508 sub mu 0.508 sub mul 1e-6 sub x x mul sub"
+    program = behavior("gap", (X,), (narrow,), (MU,))
+
+    found = judged(program, claim("fixed point", 2, 2, over=(Span("mu", 0.4, 0.6),)))
+
+    assert found.ruling is Ruling.REFUTED
+    assert found.witness is not None
+    assert abs(found.witness.settings[0][1] - 0.508) < 1e-3
+
+
+def test_a_claim_fails_where_its_cycle_is_born() -> None:
+    found = judged(ONSET, claim("stable cycle", over=(Span("mu", -0.6, 0.4),)))
+
+    assert found.ruling is Ruling.REFUTED
+    [where] = found.boundaries
+    assert where.change is Change.HOPF
+    assert where.value == pytest.approx(-0.15, abs=SHARE * 2.0)
+    assert where.above
+
+
 def test_two_intervals_in_which_a_claim_holds_have_their_boundaries() -> None:
     # x' = (mu² - 0.25) - x² has fixed points for |mu| > 1/2.
     program = behavior("twice", (X,), ("mu mu mul 0.25 sub x x mul sub",), (MU,))

@@ -58,7 +58,7 @@ def zero_within(view: Slice, controls: Array, low: Array, high: Array) -> Moving
     box, middle = Interval(low, high), exactly(between[columns])
     first, last = (subtract(exactly(end), middle) for end in controls[:, columns])
     off = Interval(first.low, last.high)
-    motion = _motion(field, low, high)
+    motion = _motion(field, centre)
     path = add(exactly(centre), _product(exactly(motion), off))
     found = Moving(centre, motion, subtract(box, path), box, field.controls, middle.low, off)
     there = _only(changes(still, centre[None], centre[None]))
@@ -81,9 +81,9 @@ def _newton(still: Enclosure, low: Array, high: Array) -> Array:
     return at
 
 
-def _motion(field: Enclosure, low: Array, high: Array) -> Array:
-    """How a zero moves with the controls, (m, d), nearly; anything is allowed."""
-    J, by_controls = slopes(field, low[None], high[None]), drifts(field, low[None], high[None])
+def _motion(field: Enclosure, at: Array) -> Array:
+    """How a zero (m,) moves with the controls, (m, d), nearly; anything is allowed."""
+    J, by_controls = slopes(field, at[None], at[None]), drifts(field, at[None], at[None])
     with np.errstate(invalid="ignore"):
         motion = -inverses_of(J)[0] @ (0.5 * by_controls.low + 0.5 * by_controls.high)[0]
     return np.where(np.isfinite(motion), motion, 0.0)
