@@ -321,7 +321,7 @@ class Claim:
     """A claim about the topology of the field: how many features of a type there are, and where.
 
     text: the sentence as its author wrote it.
-    feature: a type or group of `verifier.topology.claims`: `saddle`, `attractor`, `stable cycle`...
+    feature: a type or group of features: `saddle`, `attractor`, `stable cycle`...
     least, most: how many; `most` is None for no limit.
     other: only what no claim above it has named is counted.
     places, reaches, period: what each feature counted must satisfy; codes over controls and

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
-    from verifier.topology.comparison import Comparison as Comparison
+    from verifier.topology.claims.findings import Finding as Finding
+    from verifier.topology.comparing.comparison import Comparison as Comparison
     from verifier.topology.features import Portrait as Portrait
-    from verifier.topology.findings import Finding as Finding
 
 __version__ = "0.1.0"
 
@@ -55,9 +55,9 @@ HOMES = {
     "write_report": "specc.reported",
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
-    "Comparison": "verifier.topology.comparison",
+    "Comparison": "verifier.topology.comparing.comparison",
     "Portrait": "verifier.topology.features",
-    "Finding": "verifier.topology.findings",
+    "Finding": "verifier.topology.claims.findings",
 }
 """Where each public name is at home."""
 

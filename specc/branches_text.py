@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from runtime.arrays import Array
 from runtime.program import Unit
 from specc.figures.quantities import quantity
-from verifier.topology.continuation import Bifurcation, Branches
+from verifier.topology.branches.continuation import Bifurcation, Branches
 from verifier.topology.features import AxisRange
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from compiler.lower_field import Progress
 from runtime.program import Program
 from specc.loading import load_program
-from verifier.topology.claims import judge
-from verifier.topology.findings import Finding
+from verifier.topology.claims.findings import Finding
+from verifier.topology.claims.judge import judge
 
 
 def _in_silence(_what: str, _done: int, _of: int) -> None:

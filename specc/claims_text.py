@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from typing import Final
 
 from runtime.program import Control, Program, State
-from verifier.topology.claim_words import settings_words, value_words
-from verifier.topology.continuation import Change
-from verifier.topology.findings import Boundary, Finding, Ruling, Settings
+from verifier.topology.branches.continuation import Change
+from verifier.topology.claims.findings import Boundary, Finding, Ruling
+from verifier.topology.features import Settings
+from verifier.topology.words import settings_words, value_words
 
 STYLES: Final = {
     Ruling.HOLDS_PROVED: "bold green",

@@ -7,7 +7,13 @@ from runtime.program import Control, Program, State
 from spec_schema.units import describe, parse_unit
 from specc.faults import fault
 from specc.given import Value, settings_for
-from verifier.topology.comparison import Comparison, ComparisonError, Side, Tolerances, compare
+from verifier.topology.comparing.comparison import (
+    Comparison,
+    ComparisonError,
+    Side,
+    Tolerances,
+    compare,
+)
 from verifier.topology.portrait import Detail, portrait
 from verifier.topology.slices import SliceError
 

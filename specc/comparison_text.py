@@ -6,9 +6,9 @@ from typing import Final
 
 from compiler.quantities import rate_text
 from runtime.arrays import Array
-from verifier.topology.comparison import Comparison, RateDifference
+from verifier.topology.comparing.comparison import Comparison, RateDifference
+from verifier.topology.comparing.matching import Fate, Feature
 from verifier.topology.features import AxisRange
-from verifier.topology.matching import Fate, Feature
 
 STYLES: Final = {True: "bold green", False: "bold red"}
 """Of the last word, by whether the behavior adheres."""

@@ -11,7 +11,7 @@ from specc.figures.style_names import Style
 from specc.files import json_bytes, unknown_suffix, write_atomically
 from specc.portrait_text import record
 from specc.portraying import Found, Sweep
-from verifier.topology.continuation import Branches
+from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import Portrait
 
 

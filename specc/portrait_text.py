@@ -3,7 +3,7 @@
 from runtime.arrays import Array
 from specc.branches_text import branches_record, branches_summary
 from specc.portraying import Found, Sweep
-from verifier.topology.continuation import Branches
+from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import (
     AxisRange,
     Basins,

@@ -9,8 +9,8 @@ import numpy as np
 from runtime.program import Control, Kind, Program, State
 from specc.faults import fault
 from specc.given import Value, settings_for
-from verifier.topology.branching import find_branches
-from verifier.topology.continuation import Branches
+from verifier.topology.branches.branching import find_branches
+from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import Portrait
 from verifier.topology.portrait import Detail
 from verifier.topology.portrait import portrait as look

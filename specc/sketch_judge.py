@@ -4,8 +4,9 @@ from dataclasses import replace
 from typing import Final
 
 from runtime.program import Control, Program
-from verifier.topology.claims import judge
-from verifier.topology.findings import Finding, Ruling, Settings
+from verifier.topology.claims.findings import Finding, Ruling
+from verifier.topology.claims.judge import judge
+from verifier.topology.features import Settings
 
 SHARES: Final = ((0.02, 0.98), (0.98, 0.02))
 """Beside the defaults: every other control near one end of its domain, the rest near the other."""

@@ -13,7 +13,7 @@ from specc.cli.warming import warmed
 
 if TYPE_CHECKING:
     from runtime.program import Program
-    from verifier.topology.findings import Finding
+    from verifier.topology.claims.findings import Finding
 
 
 @final

@@ -56,7 +56,7 @@ def compare(
     from specc.comparison_text import STYLES, comparison_record, comparison_text, verdict_text
     from specc.files import require_suffix
     from specc.loading import load_program
-    from verifier.topology.comparison import Tolerances
+    from verifier.topology.comparing.comparison import Tolerances
 
     require_suffix(output, ".svg", ".png", ".pdf")
     warmed(found)

@@ -29,7 +29,7 @@ from specc.figures.paper import (
 from specc.figures.quantities import axis_label
 from specc.figures.style import bare, look
 from specc.figures.style_names import Style
-from verifier.topology.continuation import Branches, Change
+from verifier.topology.branches.continuation import Branches, Change
 from verifier.topology.features import AxisRange, PointKind, Stability
 
 T = TypeVar("T", PointKind, Stability)

@@ -26,8 +26,8 @@ from specc.figures.paper import (
 )
 from specc.figures.style import look
 from specc.figures.style_names import Style
-from verifier.topology.comparison import Comparison
-from verifier.topology.matching import Fate
+from verifier.topology.comparing.comparison import Comparison
+from verifier.topology.comparing.matching import Fate
 
 MOST: Final = (4.7, 4.3)
 """The size of the panel in inches, at most."""

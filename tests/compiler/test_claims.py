@@ -8,7 +8,7 @@ from spec_schema import claim_sentences
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.load import load_source
 from spec_schema.source import Source
-from verifier.topology.claim_members import CYCLES, POINTS
+from verifier.topology.claims.members import CYCLES, POINTS
 
 BEGINNING = """specc: 1
 kind: behavior

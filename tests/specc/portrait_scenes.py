@@ -6,7 +6,7 @@ import numpy as np
 
 from runtime.arrays import Array, frozen
 from runtime.program import Unit
-from verifier.topology.continuation import (
+from verifier.topology.branches.continuation import (
     Bifurcation,
     Branches,
     Change,

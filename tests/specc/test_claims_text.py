@@ -1,4 +1,4 @@
-"""Claims that are refuted on purpose, each with its witness: transcripts in tests/golden/refuted."""
+"""Claims refuted on purpose, each with its witness: transcripts in tests/golden/refuted."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from specc.claiming import check_claims
 from specc.claims_text import finding_record, finding_text, totals_text
 from specc.loading import load_program
-from verifier.topology.findings import Ruling
+from verifier.topology.claims.findings import Ruling
 
 FOLDER = Path(__file__).parents[1] / "golden" / "refuted"
 SPECS = sorted(FOLDER.glob("*.yaml"))

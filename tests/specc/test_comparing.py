@@ -14,8 +14,8 @@ from specc.comparing import compare_behaviors
 from specc.comparison_text import comparison_record, comparison_text, verdict_text
 from specc.figures.difference import draw_difference
 from specc.loading import load_program
-from verifier.topology.comparison import Comparison, Tolerances
-from verifier.topology.matching import Fate
+from verifier.topology.comparing.comparison import Comparison, Tolerances
+from verifier.topology.comparing.matching import Fate
 
 HEAD = """\
 specc: 1

@@ -6,8 +6,8 @@ import pytest
 from runtime.program import Program
 from tests.verifier.claim_scenes import CROSS, FOLD, FORK, MIRROR, MU, ONSET, TWO_CYCLES, X
 from tests.verifier.topology_scenes import behavior, control, state
-from verifier.topology.branching import find_branches
-from verifier.topology.continuation import Branches, Change
+from verifier.topology.branches.branching import find_branches
+from verifier.topology.branches.continuation import Branches, Change
 from verifier.topology.features import PointKind
 from verifier.topology.slices import SliceError
 

@@ -12,9 +12,9 @@ from runtime.code import Code
 from runtime.program import Claim, Program, Reach, Span
 from tests.verifier.claim_scenes import CROSS, FOLD, FORK, MU, ONSET, X, Y, all_of, at, claim
 from tests.verifier.topology_scenes import behavior, control, linear, state, tabulated, van_der_pol
-from verifier.topology.claims import judge
-from verifier.topology.continuation import Change
-from verifier.topology.findings import Finding, Ruling
+from verifier.topology.branches.continuation import Change
+from verifier.topology.claims.findings import Finding, Ruling
+from verifier.topology.claims.judge import judge
 
 SHARE = 1e-3
 """How closely a boundary must be located, as a share of the control's domain."""

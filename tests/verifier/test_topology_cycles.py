@@ -22,7 +22,7 @@ from tests.verifier.topology_scenes import (
     state,
     tabulated,
 )
-from verifier.topology.cycles import find_cycles
+from verifier.topology.cycles.limit_cycles import find_cycles
 from verifier.topology.features import Cycle, FixedPoint, PointKind, Stability, Standing
 from verifier.topology.slices import cut
 

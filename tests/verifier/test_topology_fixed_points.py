@@ -22,9 +22,9 @@ from tests.verifier.topology_scenes import (
     tabulated,
     van_der_pol,
 )
-from verifier.topology.classification import classified
 from verifier.topology.features import FixedPoint, PointKind, Portrait
 from verifier.topology.portrait import Detail, portrait
+from verifier.topology.zeros.classification import classified
 
 POINTS_ONLY = Detail(plane=129, line=1025, trajectories=0, cycles=False, separatrices=False)
 COARSE = Detail(plane=65, trajectories=0, cycles=False, separatrices=False)

@@ -27,8 +27,8 @@ from tests.verifier.hybrid_scenes import (
 )
 from tests.verifier.topology_scenes import state
 from verifier.topology.features import Cycle, PointKind, Stability
-from verifier.topology.hybrid import Hybrid, hybrid_of, leaves_at
-from verifier.topology.hybrid_cycles import find_hybrid_cycles
+from verifier.topology.hybrid.cycles import find_hybrid_cycles
+from verifier.topology.hybrid.flow import Hybrid, hybrid_of, leaves_at
 from verifier.topology.portrait import Detail, portrait
 from verifier.topology.slices import cut
 

@@ -11,7 +11,7 @@ from runtime.arrays import Array
 from runtime.program import Program
 from tests.verifier.topology_scenes import plane, tabulated
 from verifier.topology.features import Grid
-from verifier.topology.nullclines import find_nullclines
+from verifier.topology.lines.nullclines import find_nullclines
 from verifier.topology.slices import cut, rates_at
 
 

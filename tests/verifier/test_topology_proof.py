@@ -25,11 +25,11 @@ from tests.verifier.topology_scenes import (
     state,
     tabulated,
 )
-from verifier.topology.certificates import unstable_directions
 from verifier.topology.features import Completeness, FixedPoint, PointKind, Standing
 from verifier.topology.portrait import Detail, portrait
-from verifier.topology.proof import Proof, prove
 from verifier.topology.slices import SliceError, cut
+from verifier.topology.zeros.certificates import unstable_directions
+from verifier.topology.zeros.proof import Proof, prove
 
 POINTS_ONLY = Detail(plane=65, line=257, trajectories=0, cycles=False, separatrices=False)
 FIFTEEN = plane("y 0.9 6 x mul sin mul sub", "x 0.9 6 y mul sin mul sub")

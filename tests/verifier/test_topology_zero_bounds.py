@@ -12,8 +12,8 @@ from runtime.enclosure import drifts, enclosure_of
 from runtime.interpolation import tabulate
 from runtime.program import Axis, Field, Method, Program, Term
 from tests.verifier.topology_scenes import behavior, control, state
+from verifier.topology.claims.zero_bounds import zero_within
 from verifier.topology.slices import cut
-from verifier.topology.zero_bounds import zero_within
 
 RATIO = behavior(
     "ratio",

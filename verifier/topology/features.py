@@ -5,10 +5,13 @@ All in SI. m is the number of axes of the portrait (1 or 2); points are (..., m)
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import final
+from typing import TypeAlias, final
 
 from runtime.arrays import Array, Integers
 from runtime.program import Unit
+
+Settings: TypeAlias = tuple[tuple[str, float], ...]
+"""Controls and held states at values, SI; what is not named has its default."""
 
 
 @final

@@ -8,8 +8,8 @@ import numpy as np
 
 from runtime.arrays import frozen
 from runtime.program import Program
-from verifier.topology.basins import find_basins
-from verifier.topology.cycles import DIRECTIONS, find_cycles
+from verifier.topology.cycles.limit_cycles import DIRECTIONS, find_cycles
+from verifier.topology.ends.basins import find_basins
 from verifier.topology.features import (
     Cycle,
     FixedPoint,
@@ -18,14 +18,14 @@ from verifier.topology.features import (
     Separatrix,
     Trajectory,
 )
-from verifier.topology.fixed_points import find_fixed_points
-from verifier.topology.hybrid import hybrid_of
-from verifier.topology.hybrid_portrait import with_modes
-from verifier.topology.manifolds import find_separatrices
-from verifier.topology.nullclines import find_nullclines
-from verifier.topology.orbits import find_orbits
+from verifier.topology.hybrid.flow import hybrid_of
+from verifier.topology.hybrid.portrait import with_modes
+from verifier.topology.lines.nullclines import find_nullclines
+from verifier.topology.manifolds.separatrices import find_separatrices
+from verifier.topology.paths.orbits import find_orbits
+from verifier.topology.paths.trajectories import find_trajectories
 from verifier.topology.slices import Slice, SliceError, cut, rates_at
-from verifier.topology.trajectories import find_trajectories
+from verifier.topology.zeros.fixed_points import find_fixed_points
 
 
 @final

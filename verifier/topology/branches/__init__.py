@@ -1,0 +1,1 @@
+"""Fixed points and cycles along a control parameter: bifurcation diagrams."""

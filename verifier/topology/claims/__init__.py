@@ -1,0 +1,1 @@
+"""Claims about the topology of a field, judged."""

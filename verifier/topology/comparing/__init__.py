@@ -1,0 +1,1 @@
+"""One portrait held against another."""

@@ -1,0 +1,1 @@
+"""Closed trajectories of flows and maps, with their multipliers."""

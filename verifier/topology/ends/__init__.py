@@ -1,0 +1,1 @@
+"""Where trajectories end: traps around what attracts, and the basins of attraction."""

@@ -1,0 +1,124 @@
+"""Basins with modes: which attractor each place of the shown mode goes to, through all switches.
+
+m: number of axes; L: lanes. Distances are shares of the axes' widths.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from runtime.arrays import Array, Booleans, Integers
+from runtime.integrators import ENDINGS
+from runtime.rollout import Ending
+from verifier.topology.ends.basins import LEAVES, MOST_CELLS, OPEN, centres_of
+from verifier.topology.ends.capture import STABLE
+from verifier.topology.features import Attractor, Basins, Cycle, FixedPoint
+from verifier.topology.hybrid.flow import Hybrid, followed, on_axes, points_in
+
+LOOKS: Final = (2.0, 3.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)
+"""How long, in tempos, lanes go on from look to look, those that have come to no end."""
+TOLERANCE: Final = 1e-6
+AGAIN: Final = 0.37
+"""How much later, in tempos, a lane must still be there: it may only have passed."""
+NEAR: Final = 0.02
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Goal:
+    """An attractor, as points (k, 1 + m): the mode, and shares of the widths."""
+
+    is_cycle: bool
+    index: int
+    tree: cKDTree
+
+    def holds(self, places: Array) -> Booleans:
+        """Which of `places` (L, 1 + m) are near; modes are far apart."""
+        known = np.all(np.isfinite(places), axis=-1)
+        gaps = np.full(len(places), np.inf)
+        gaps[known] = self.tree.query(places[known], distance_upper_bound=2.0 * NEAR)[0]
+        return np.asarray(gaps < NEAR)
+
+
+def find_hybrid_basins(
+    hybrid: Hybrid,
+    fixed_points: tuple[tuple[FixedPoint, int], ...],
+    cycles: tuple[Cycle, ...],
+    cells: int,
+) -> Basins | None:
+    """The attractor of the centre of each of `cells` per axis; None where nothing attracts.
+
+    fixed_points: each with its mode. What leaves the domain on the way, also by a jump,
+    leaves; what chatters is open.
+    """
+    goals = _goals(hybrid, fixed_points, cycles)
+    if cells < 1 or not goals or not np.isfinite(hybrid.tempo):
+        return None
+    view = hybrid.view
+    centres = centres_of(view, min(cells, MOST_CELLS[len(view.axes)]))
+    starts = np.stack(np.meshgrid(*centres, indexing="ij"), axis=-1).reshape(-1, len(view.axes))
+    labels = _labelled(hybrid, goals, starts)
+    share = [float(np.mean(labels == k)) for k in range(len(goals))]
+    return Basins(
+        centres=centres,
+        labels=labels.reshape([len(axis) for axis in centres]),
+        attractors=tuple(
+            Attractor(goal.is_cycle, goal.index, part)
+            for goal, part in zip(goals, share, strict=True)
+        ),
+        leaves=float(np.mean(labels == LEAVES)),
+        open=float(np.mean(labels == OPEN)),
+    )
+
+
+def _goals(
+    hybrid: Hybrid, fixed_points: tuple[tuple[FixedPoint, int], ...], cycles: tuple[Cycle, ...]
+) -> tuple[Goal, ...]:
+    view = hybrid.view
+    points = [
+        Goal(is_cycle=False, index=i, tree=_tree(hybrid, point.at[None], np.array([mode])))
+        for i, (point, mode) in enumerate(fixed_points)
+        if point.kind in STABLE
+    ]
+    closed = [
+        Goal(is_cycle=True, index=i, tree=_tree(hybrid, cycle.points, np.array(cycle.modes)))
+        for i, cycle in enumerate(cycles)
+        if cycle.is_attracting and cycle.points.shape[-1] == len(view.axes)
+    ]
+    return (*points, *closed)
+
+
+def _tree(hybrid: Hybrid, points: Array, modes: Array) -> cKDTree:
+    sizes = np.array([0.0, *(1.0 if periodic else 0.0 for periodic in hybrid.view.periodic)])
+    return cKDTree(_places(hybrid, points, modes), boxsize=sizes)
+
+
+def _places(hybrid: Hybrid, points: Array, modes: Array) -> Array:
+    """Modes, and shares of the widths, (L, 1 + m)."""
+    shares = (points - hybrid.view.low) / hybrid.view.width
+    shares = np.where(hybrid.view.periodic, np.mod(shares, 1.0), shares)
+    return np.column_stack([modes, shares])
+
+
+def _labelled(hybrid: Hybrid, goals: tuple[Goal, ...], starts: Array) -> Integers:
+    labels = np.full(len(starts), OPEN)
+    waiting = np.arange(len(starts))
+    states = points_in(hybrid, starts, hybrid.shown)
+    for look in LOOKS:
+        times = hybrid.tempo * np.array([0.0, look, look + AGAIN])
+        ran = followed(hybrid, states, times, TOLERANCE)
+        for k, goal in enumerate(goals):
+            there = [
+                goal.holds(_places(hybrid, on_axes(hybrid, x), x[:, hybrid.column]))
+                for x in (ran.states[:, 1], ran.states[:, 2])
+            ]
+            labels[waiting[there[0] & there[1]]] = k
+        gone = ran.endings == ENDINGS.index(Ending.LEFT_DOMAIN)
+        labels[waiting[gone]] = LEAVES
+        going = (labels[waiting] == OPEN) & (ran.endings == ENDINGS.index(Ending.COMPLETED))
+        waiting, states = waiting[going], ran.states[going, 2]
+        if not waiting.size:
+            break
+    return labels

@@ -1,0 +1,1 @@
+"""Nullclines, every branch of them."""

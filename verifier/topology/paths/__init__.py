@@ -1,0 +1,1 @@
+"""Trajectories and orbits: where they begin, and how they are followed."""

