@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from specc.loading import compile_spec as compile_spec
     from specc.loading import load_program as load_program
     from specc.loading import write_artifact as write_artifact
+    from specc.portraying import Sweep as Sweep
+    from specc.portraying import branches as branches
     from specc.portraying import portrait as portrait
+    from specc.portraying import sweep as sweep
     from specc.recorded import record as record
     from specc.reported import write_report as write_report
     from specc.running import simulate as simulate
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
     from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
+    from verifier.topology.branches.continuation import Branches as Branches
     from verifier.topology.claims.findings import Finding as Finding
     from verifier.topology.comparing.comparison import Comparison as Comparison
     from verifier.topology.features import Portrait as Portrait
@@ -46,7 +50,9 @@ HOMES = {
     "compile_spec": "specc.loading",
     "dump": "compiler.dump",
     "load_program": "specc.loading",
+    "branches": "specc.portraying",
     "portrait": "specc.portraying",
+    "sweep": "specc.portraying",
     "simulate": "specc.running",
     "verify": "specc.verifying",
     "write_artifact": "specc.loading",
@@ -56,7 +62,9 @@ HOMES = {
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
     "Comparison": "verifier.topology.comparing.comparison",
+    "Branches": "verifier.topology.branches.continuation",
     "Portrait": "verifier.topology.features",
+    "Sweep": "specc.portraying",
     "Finding": "verifier.topology.claims.findings",
 }
 """Where each public name is at home."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from compiler.lower_field import Progress
 from runtime.program import Program
-from specc.loading import load_program
+from specc.loading import as_program
 from verifier.topology.claims.findings import Finding
 from verifier.topology.claims.judge import judge
 
@@ -23,5 +23,4 @@ def check_claims(
     Raises:
         SpecError: the spec is wrong, or the artifact is damaged.
     """
-    program = spec if isinstance(spec, Program) else load_program(spec)
-    return judge(program, None, progress)
+    return judge(as_program(spec), None, progress)

@@ -1,12 +1,14 @@
 """One behavior held against another, from what a user gives."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Final
 
 from runtime.program import Control, Program, State
 from spec_schema.units import describe, parse_unit
 from specc.faults import fault
 from specc.given import Value, settings_for
+from specc.loading import as_program
 from verifier.topology.comparing.comparison import (
     Comparison,
     ComparisonError,
@@ -30,8 +32,8 @@ REMEDIES: Final = {
 
 
 def compare_behaviors(
-    found: Program,
-    wanted: Program,
+    found: Program | Path | str,
+    wanted: Program | Path | str,
     axes: Sequence[str] | None = None,
     held: Mapping[str, Value] | None = None,
     tolerances: Tolerances = USUAL,
@@ -43,6 +45,7 @@ def compare_behaviors(
     Raises:
         SpecError: a name or a value that can't be used, or behaviors that can't be compared.
     """
+    found, wanted = as_program(found), as_program(wanted)
     given = held or {}
     known = {part.name: part for part in (*_parts(found), *_parts(wanted))}
     unknown = {name: value for name, value in given.items() if name not in known}

@@ -32,6 +32,15 @@ def write_artifact(program: Program, path: Path | str) -> bytes:
     return data
 
 
+def as_program(spec: Program | Path | str) -> Program:
+    """The program itself, or that of a spec's file.
+
+    Raises:
+        SpecError: the spec is wrong, or the artifact is damaged.
+    """
+    return spec if isinstance(spec, Program) else load_program(spec)
+
+
 def load_program(path: Path | str) -> Program:
     """The program of a spec: a .yaml is compiled, a .specc read.
 

@@ -1,11 +1,11 @@
 """A portrait in sentences: what was found, what is proved, what is not known."""
 
-from runtime.arrays import Array
+from dataclasses import replace
+
 from specc.branches_text import branches_record, branches_summary
 from specc.portraying import Found, Sweep
 from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import (
-    AxisRange,
     Basins,
     Cycle,
     FixedPoint,
@@ -14,6 +14,7 @@ from verifier.topology.features import (
     Separatrix,
     Standing,
 )
+from verifier.topology.names import attractor_names, cycle_names, place, point_name
 from verifier.topology.portrait_json import as_json
 
 
@@ -23,7 +24,7 @@ def summary(found: Found) -> str:
         case Portrait():
             return portrait_summary(found)
         case Sweep():
-            return "\n\n".join(map(portrait_summary, found.portraits))
+            return _sweep_summary(found)
         case Branches():
             return branches_summary(found)
 
@@ -39,6 +40,19 @@ def record(found: Found) -> dict[str, object]:
             return branches_record(found)
 
 
+def _sweep_summary(found: Sweep) -> str:
+    """Portrait by portrait; a note that is the same of all comes once, at the end."""
+    first, *others = found.portraits
+    common = [n for n in first.notes if all(n in other.notes for other in others)] if others else []
+    parts = [
+        portrait_summary(replace(p, notes=tuple(n for n in p.notes if n not in common)))
+        for p in found.portraits
+    ]
+    if common:
+        parts.append("\n".join(["all panels", *(f"  {note}" for note in common)]))
+    return "\n\n".join(parts)
+
+
 def portrait_summary(portrait: Portrait) -> str:
     """Everything that a portrait found, one line each."""
     axes = ", ".join(axis.name for axis in portrait.axes)
@@ -46,7 +60,7 @@ def portrait_summary(portrait: Portrait) -> str:
         f"{h.name} = {h.label or f'{h.value / h.unit.scale:g}'}" for h in portrait.held
     )
     rows = [f"{portrait.name} over {axes}" + (f", at {held}" if held else "")]
-    if not portrait.fixed_points:
+    if not portrait.fixed_points and not _is_proved_empty(portrait):
         rows.append("  no fixed points found")
     rows += [f"  {_fixed_point(point, portrait)}" for point in portrait.fixed_points]
     rows += [f"  {_cycle(cycle, portrait)}" for cycle in portrait.cycles]
@@ -56,6 +70,11 @@ def portrait_summary(portrait: Portrait) -> str:
     rows += [f"  {_sentence(text)}" for text in proof_sentences(portrait)]
     rows += [f"  {note}" for note in portrait.notes]
     return "\n".join(rows)
+
+
+def _is_proved_empty(portrait: Portrait) -> bool:
+    proof = portrait.completeness
+    return proof.complete and bool(proof.about)
 
 
 def proof_sentences(portrait: Portrait) -> list[str]:
@@ -106,14 +125,7 @@ def _fixed_point(point: FixedPoint, portrait: Portrait) -> str:
     if portrait.completeness.about and not point.proved:
         remarks.append("not proved")
     told = f" ({', '.join(remarks)})" if remarks else ""
-    return f"{point.kind} at {_place(portrait.axes, point.at)}; eigenvalues {values}{told}"
-
-
-def _place(axes: tuple[AxisRange, ...], at: Array) -> str:
-    return ", ".join(
-        f"{axis.name} = {value / axis.unit.scale + 0.0:.6g}"
-        for axis, value in zip(axes, at.tolist(), strict=True)
-    )
+    return f"{point.kind} at {place(portrait.axes, point.at.tolist(), 6)}; eigenvalues {values}{told}"
 
 
 def _cycle(cycle: Cycle, portrait: Portrait) -> str:
@@ -128,33 +140,26 @@ def _cycle(cycle: Cycle, portrait: Portrait) -> str:
 
 def _separatrix(branch: Separatrix, portrait: Portrait) -> str:
     """Where a branch of a saddle's manifold comes from or goes to."""
-    saddle = portrait.fixed_points[branch.saddle]
     which = "stable" if branch.stable else "unstable"
     way = "comes from" if branch.stable else "goes to"
     match branch.reaches:
         case Reaches.EDGE | Reaches.ITSELF:
             end = f"{way} {branch.reaches}"
         case Reaches.POINT:
-            other = portrait.fixed_points[branch.to]
-            end = f"{way} the {other.kind} at {_place(portrait.axes, other.at)}"
+            end = f"{way} the {point_name(portrait, branch.to)}"
         case Reaches.CYCLE:
             cycle = portrait.cycles[branch.to]
-            end = f"{way} the {cycle.stability} cycle of period {cycle.period:.6g} s"
+            end = f"{way} the {cycle.stability} {cycle_names(portrait)[branch.to]}"
         case Reaches.NOWHERE_SEEN:
             end = f"was {branch.reaches}"
-    return f"{which} manifold of the saddle at {_place(portrait.axes, saddle.at)} {end}"
+    return f"{which} manifold of the {point_name(portrait, branch.saddle)} {end}"
 
 
 def _basins(basins: Basins, portrait: Portrait) -> list[str]:
-    rows = []
-    for attractor in basins.attractors:
-        if attractor.is_cycle:
-            cycle = portrait.cycles[attractor.index]
-            name = f"cycle of period {cycle.period:.6g} s"
-        else:
-            point = portrait.fixed_points[attractor.index]
-            name = f"{point.kind} at {_place(portrait.axes, point.at)}"
-        rows.append(f"{_share(attractor.share)} of the domain goes to the {name}")
+    rows = [
+        f"{_share(attractor.share)} of the domain goes to the {name}"
+        for attractor, name in zip(basins.attractors, attractor_names(portrait), strict=True)
+    ]
     if basins.leaves > 0.0:
         rows.append(f"{_share(basins.leaves)} of the domain leaves it")
     if basins.open > 0.0:

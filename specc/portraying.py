@@ -1,7 +1,8 @@
 """A phase portrait, from what a user gives: names, and numbers in the variables' own units."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final, TypeAlias, final
 
 import numpy as np
@@ -9,15 +10,17 @@ import numpy as np
 from runtime.program import Control, Kind, Program, State
 from specc.faults import fault
 from specc.given import Value, settings_for
-from verifier.topology.branches.branching import find_branches
+from specc.loading import as_program
+from verifier.topology.branches.branching import Progress, find_branches, in_silence
 from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import Portrait
+from verifier.topology.hybrid.portrait import FIELD_OF, OF_EACH_PANEL
 from verifier.topology.portrait import Detail
 from verifier.topology.portrait import portrait as look
 from verifier.topology.slices import SliceError
 
-FULL: Final = Detail(basins=80)
-"""Everything, with the basins of attraction in cells of an eightieth of each axis."""
+FULL: Final = Detail(basins=64)
+"""Everything, with the basins of attraction in cells of a 64th of each axis."""
 
 SMALL: Final = Detail(trajectories=2, basins=48)
 """For one of many panels."""
@@ -39,7 +42,7 @@ Found: TypeAlias = Portrait | Sweep | Branches
 
 
 def portrait(
-    program: Program,
+    spec: Program | Path | str,
     axes: Sequence[str] | None = None,
     held: Mapping[str, Value] | None = None,
 ) -> Portrait:
@@ -48,11 +51,11 @@ def portrait(
     Raises:
         SpecError: an axis or a name that it does not have, or a value outside its domain.
     """
-    return _portrait(program, axes, held or {}, FULL)
+    return _portrait(as_program(spec), axes, held or {}, FULL)
 
 
 def sweep(
-    program: Program,
+    spec: Program | Path | str,
     name: str,
     values: str | Sequence[Value],
     axes: Sequence[str] | None = None,
@@ -65,27 +68,40 @@ def sweep(
     Raises:
         SpecError: as `portrait`; or too many values, or another form of text.
     """
+    program = as_program(spec)
     chosen = swept_values(program, name, values) if isinstance(values, str) else values
     if not 1 <= len(chosen) <= MOST_PANELS:
         message = f"a sweep shows 1 to {MOST_PANELS} values (got {len(chosen)})"
         raise fault("V342", name, message, f"write {name}=LOW:HIGH:COUNT")
     names = _without(program, axes, name)
     given = held or {}
-    panels = tuple(_portrait(program, names, {**given, name: v}, SMALL) for v in chosen)
-    return Sweep(name, panels)
+    panels = [_portrait(program, names, {**given, name: v}, SMALL) for v in chosen]
+    if name == program.field.mode:
+        panels = [_of_its_mode(panel) for panel in panels]
+    return Sweep(name, tuple(panels))
+
+
+def _of_its_mode(panel: Portrait) -> Portrait:
+    """A panel of a sweep over the modes: the note on whose field it is, as one for all."""
+    notes = (OF_EACH_PANEL if note.startswith(FIELD_OF) else note for note in panel.notes)
+    return replace(panel, notes=tuple(notes))
 
 
 def branches(
-    program: Program,
+    spec: Program | Path | str,
     name: str,
     ends: str | None = None,
     held: Mapping[str, Value] | None = None,
+    progress: Progress = in_silence,
 ) -> Branches:
     """The bifurcation diagram against a control: over its domain, or over `low:high`.
+
+    `progress(what, done, of)` is called before each portrait that it is made of.
 
     Raises:
         SpecError: no such control, values outside its domain, or another form of text.
     """
+    program = as_program(spec)
     part = next((c for c in program.controls if c.name == name), None)
     if part is None:
         known = ", ".join(c.name for c in program.controls) or "none"
@@ -98,7 +114,7 @@ def branches(
     parts: tuple[State | Control, ...] = (*program.states, *program.controls)
     settings = settings_for(parts, held or {}, "state or control")
     try:
-        return find_branches(program, name, settings, limits)
+        return find_branches(program, name, settings, limits, progress=progress)
     except SliceError as error:
         raise fault("V342", program.source.file, str(error)) from error
 

@@ -1,16 +1,18 @@
 """A behavior run alone, from what a user gives: numbers in the variables' own units."""
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from runtime.program import Program
 from runtime.rollout import Rollout
 from runtime.simulate import simulate as run
 from specc.faults import fault
 from specc.given import Value, seconds, settings_for
+from specc.loading import as_program
 
 
 def simulate(
-    program: Program,
+    spec: Program | Path | str,
     start: Mapping[str, Value] | None = None,
     duration: Value = "20 s",
     controls: Mapping[str, Value] | None = None,
@@ -23,6 +25,7 @@ def simulate(
     Raises:
         SpecError: a name that it does not have, or a value outside its domain.
     """
+    program = as_program(spec)
     begin = settings_for(program.states, start or {}, "state")
     held = settings_for(program.controls, controls or {}, "control")
     step = None if every is None else seconds(every, "every")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from specc.cli.console import print_json, print_text, say
+from specc.cli.console import print_json, print_text, progress_bar, say
 from specc.cli.options import Format, FormatOption, SpecPath, assignments, one_assignment
 from specc.cli.warming import warmed
 from specc.figures.style_names import Style
@@ -36,7 +36,10 @@ def portrait(
     sweep: Annotated[
         str | None,
         typer.Option(
-            "--sweep", metavar="NAME=LOW:HIGH:COUNT", help="A panel for each value of a control."
+            "--sweep",
+            metavar="NAME=LOW:HIGH:COUNT",
+            help="A panel for each value of a control or a mode: `mu=0.1:3:6`, "
+            "`speed=0.1,0.5`, `going=forward,back`.",
         ),
     ] = None,
     slices: Annotated[
@@ -89,7 +92,8 @@ def portrait(
             found = portraying.sweep(program, name, values, names, held)
         case None, str(text) if names is None:
             name, _, ends = text.partition("=")
-            found = portraying.branches(program, name.strip(), ends or None, held)
+            with progress_bar(program.name) as progress:
+                found = portraying.branches(program, name.strip(), ends or None, held, progress)
         case None, _:
             raise typer.BadParameter("--against looks at all states that move: leave --axes out")
         case _:

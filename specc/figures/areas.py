@@ -1,5 +1,6 @@
 """Areas of a portrait: basins as light tints, and boxes in which nothing could be decided."""
 
+import textwrap
 from typing import Final
 
 import numpy as np
@@ -9,9 +10,10 @@ from scipy.ndimage import gaussian_filter, zoom
 
 from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry
+from specc.figures.palettes import Palette
 from specc.figures.panel import Panel
-from specc.figures.quantities import number
-from verifier.topology.features import Attractor, Basins, Portrait
+from verifier.topology.features import AxisRange, Basins, Portrait
+from verifier.topology.names import attractor_tags
 
 FINER: Final = 4
 """Each cell of the basins is drawn as so many squared, its edge between the centres smoothed."""
@@ -22,66 +24,101 @@ BLUR: Final = 0.8
 SMALLEST: Final = 0.09
 """An undecided box is drawn at least this large, in inches."""
 
+WIDEST_LABEL: Final = 44
+"""Characters in a line of the legend."""
+
+CHIP: Final = 0.42
+"""The width of a share above a small panel, in inches."""
+
+CHIPS_ROOM: Final = 0.6
+"""The part of a panel's width that shares may take; its name takes the rest."""
+
 ALL: Final = 0.9995
 """Where one attractor has this share of the domain, a tint would tell nothing."""
 
 
 def draw_basins(panel: Panel, portrait: Portrait) -> list[Entry]:
-    """Each attractor's basin in a tint of its own; nothing where one has it all."""
+    """Each attractor's basin in a tint of its own; nothing where one has it all.
+
+    In a small panel that one is tinted, too: its neighbours may differ.
+    """
     basins = portrait.basins
-    if basins is None or max((a.share for a in basins.attractors), default=1.0) > ALL:
+    if basins is None or (_is_of_one(basins) and not panel.is_small):
         return []
     x, y = panel.states
+    extent = (*_ends(x), *_ends(y))
+    present = [int(k) for k in np.unique(basins.labels)]
+    fine = _smoothed(basins.labels, present)
     panel.axes.imshow(
-        _picture(panel, basins).swapaxes(0, 1),
+        np.array([_ground(panel, label) for label in present])[fine].swapaxes(0, 1),
         origin="lower",
-        extent=(
-            x.low / x.unit.scale,
-            x.high / x.unit.scale,
-            y.low / y.unit.scale,
-            y.high / y.unit.scale,
-        ),
+        extent=extent,
         aspect="auto",
         interpolation="nearest",
         zorder=0,
     )
+    for k, label in enumerate(present):
+        if label >= 0 and hatch(panel.palette, label):
+            _hatch(panel, (fine == k).T, label, extent)
     return basin_entries(panel, portrait)
 
 
 def basin_entries(panel: Panel, portrait: Portrait) -> list[Entry]:
-    """What the legend says of the basins, with the share of each."""
+    """What the legend says of the basins, with the share of each; panels say their own."""
     basins = portrait.basins
     if basins is None:
         return []
-    faint = panel.palette.faint
+    palette = panel.palette
+    nothing = Patch(facecolor=palette.paper, edgecolor=palette.faint, linewidth=0.5)
     if panel.is_small:
-        return [Entry("basins of attraction", (_patch(tint(panel, 0), faint),))]
+        some = [Entry("basin of attraction, and its share", (basin_patch(palette, 0),))]
+        return some + ([Entry("leaves the domain", (nothing,))] if basins.leaves > 0.0 else [])
     entries = [
-        Entry(
-            f"goes to {attractor_name(portrait, a)}: {share_text(a.share)}",
-            (_patch(tint(panel, k), faint),),
-        )
-        for k, a in enumerate(basins.attractors)
+        Entry(label, (basin_patch(palette, k),)) for k, label in enumerate(basin_labels(portrait))
     ]
     if basins.leaves > 0.0:
-        patch = _patch(panel.palette.paper, faint)
-        entries.append(Entry(f"leaves the domain: {share_text(basins.leaves)}", (patch,)))
+        entries.append(Entry(f"leaves the domain: {share_text(basins.leaves)}", (nothing,)))
     return entries
 
 
-def attractor_name(portrait: Portrait, attractor: Attractor) -> str:
-    """How the legend calls an attractor: by its type and its place, or its period."""
-    if attractor.is_cycle:
-        return f"the cycle of {number(portrait.cycles[attractor.index].period)} s"
-    point = portrait.fixed_points[attractor.index]
-    pairs = list(zip(portrait.axes, point.at.tolist(), strict=True))
-    # To a thousandth of the axis: 1e-7 m is 0 on a portrait of 4 m.
-    steps = [1e-3 * axis.width for axis, _ in pairs]
-    rounded = [round(v / step) * step for (_, v), step in zip(pairs, steps, strict=True)]
-    values = [number(v / axis.unit.scale) for (axis, _), v in zip(pairs, rounded, strict=True)]
-    if len(pairs) == 1:
-        return f"{pairs[0][0].name} = {values[0]}"
-    return f"({', '.join(values)})"
+def basin_labels(portrait: Portrait) -> list[str]:
+    """What the legend calls each basin; a long name goes on in a second line."""
+    found = portrait.basins.attractors if portrait.basins else ()
+    return [
+        textwrap.fill(
+            f"goes to {tag}: {share_text(each.share)}".replace("-", "−"),
+            WIDEST_LABEL,
+            break_long_words=False,
+        )
+        for each, tag in zip(found, attractor_tags(portrait), strict=True)
+    ]
+
+
+def draw_shares(panel: Panel, portrait: Portrait) -> None:
+    """Above a small panel at the right: the share of each basin on its tint, white for leaving."""
+    basins = portrait.basins
+    if basins is None:
+        return
+    palette = panel.palette
+    chips = [(each.share, tint(palette, k)) for k, each in enumerate(basins.attractors)]
+    chips += [(basins.leaves, palette.paper)] if basins.leaves > 0.0 else []
+    room = int(CHIPS_ROOM * float(panel.size[0]) / CHIP)
+    for k, (share, ground) in enumerate(reversed(chips[:room])):
+        panel.axes.annotate(
+            share_text(share),
+            (1.0, 1.0),
+            xytext=(-3.0 - 72.0 * CHIP * k, 6.5),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            ha="right",
+            fontsize=6.5,
+            bbox={"facecolor": ground, "edgecolor": palette.faint, "linewidth": 0.4, "pad": 1.8},
+            annotation_clip=False,
+        )
+
+
+def _is_of_one(basins: Basins) -> bool:
+    return max((a.share for a in basins.attractors), default=1.0) > ALL
 
 
 def share_text(share: float) -> str:
@@ -93,21 +130,42 @@ def share_text(share: float) -> str:
     return f"{100.0 * share:.1f} %"
 
 
-def tint(panel: Panel, index: int) -> str:
+def tint(palette: Palette, index: int) -> str:
     """The ground of the basin of an attractor; tints repeat after the sixth."""
-    return panel.palette.tints[index % len(panel.palette.tints)]
+    return palette.tints[index % len(palette.tints)]
 
 
-def _patch(color: str, edge: str) -> Patch:
-    return Patch(facecolor=color, edgecolor=edge, linewidth=0.5)
+def hatch(palette: Palette, index: int) -> str:
+    """The hatching of the basin of an attractor, where greys alone don't tell them apart."""
+    return palette.hatches[index % len(palette.hatches)] if palette.hatches else ""
 
 
-def _picture(panel: Panel, basins: Basins) -> Array:
-    """Colours (n1, n2, 4) of the finer cells."""
-    present = [int(k) for k in np.unique(basins.labels)]
-    fine = _smoothed(basins.labels, present)
-    colors = np.array([_ground(panel, label) for label in present])
-    return np.asarray(colors[fine])
+def basin_patch(palette: Palette, index: int) -> Patch:
+    """How a legend shows the ground of a basin."""
+    return Patch(
+        facecolor=tint(palette, index),
+        hatch=2 * hatch(palette, index),
+        edgecolor=palette.faint,
+        linewidth=0.5,
+    )
+
+
+def _ends(state: AxisRange) -> tuple[float, float]:
+    return state.low / state.unit.scale, state.high / state.unit.scale
+
+
+def _hatch(
+    panel: Panel, inside: Booleans, label: int, extent: tuple[float, float, float, float]
+) -> None:
+    """Hatches where (n2, n1) it is inside."""
+    panel.axes.contourf(
+        np.pad(inside.astype(np.float64), 1, mode="edge"),
+        levels=[0.5, 1.5],
+        colors="none",
+        hatches=[hatch(panel.palette, label)],
+        extent=extent,
+        zorder=0.5,
+    )
 
 
 def _smoothed(labels: Integers, present: list[int]) -> Integers:
@@ -127,7 +185,7 @@ def _blurred(inside: Booleans) -> Array:
 def _ground(panel: Panel, label: int) -> tuple[float, float, float, float]:
     if label < 0:
         return to_rgba(panel.palette.paper, 0.0)
-    return to_rgba(tint(panel, label))
+    return to_rgba(tint(panel.palette, label))
 
 
 def draw_undecided(panel: Panel, portrait: Portrait) -> list[Entry]:

@@ -9,8 +9,9 @@ from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from runtime.program import Unit
-from specc.figures.areas import ALL, attractor_name, share_text
+from specc.figures.areas import ALL, basin_labels, basin_patch, hatch, tint
 from specc.figures.axes_of_states import name_x, name_y
+from specc.figures.curves import CYCLE_DASHES, CYCLE_WIDTH, LEAP_DASHES
 from specc.figures.legend import Entry, Look, line_entry
 from specc.figures.markers import cross, mark, ring
 from specc.figures.palettes import Palette
@@ -42,10 +43,13 @@ def _phase_line(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]
     if not basins:
         axes.fill_between(nodes, 0.0, rates, color=color, alpha=0.08, linewidth=0.0, zorder=1)
     _directions(axes, nodes, rates, palette)
+    closed = [entry for cycle in portrait.cycles for entry in _loop(axes, cycle, scale, palette)]
     points = _points(axes, portrait, palette, on_diagonal=False)
     goes: Look = {"marker": ">", "markersize": 5.0, "linewidth": 0.8, "color": palette.ink}
     return [
         *points,
+        *closed,
+        *_switching(axes, portrait, palette),
         line_entry(rate_of(state.name), color=color, linewidth=1.8),
         line_entry("where it goes", **goes),
         *basins,
@@ -61,6 +65,40 @@ def _directions(axes: Axes, nodes: Array, rates: Array, palette: Palette) -> Non
             middle = 0.5 * (nodes[a] + nodes[b - 1])
             shape = ">" if sign[a] > 0 else "<"
             axes.plot(middle, 0.0, shape, color=palette.ink, markersize=6.0, zorder=4)
+
+
+def _loop(axes: Axes, cycle: Cycle, scale: float, palette: Palette) -> list[Entry]:
+    """A cycle through modes: in each its rate over the state, dotted where one is left."""
+    modes = np.array(cycle.modes)
+    values, ends = cycle.points[:, 0] / scale, list[Array]()
+    dashes = CYCLE_DASHES[cycle.stability]
+    look: Look = {"color": palette.cycle, "linewidth": CYCLE_WIDTH, "linestyle": dashes}
+    for part in np.split(np.arange(len(values)), np.flatnonzero(np.diff(modes)) + 1):
+        moving = part[np.append(np.diff(cycle.times[part]) > 0.0, True)]
+        if len(moving) < 2:
+            continue
+        rate = np.gradient(values[moving], cycle.times[moving])
+        axes.plot(values[moving], rate, zorder=5, **look)
+        middle = len(moving) // 2
+        shape = ">" if rate[middle] > 0.0 else "<"
+        axes.plot(values[moving][middle], rate[middle], shape, color=palette.cycle, zorder=5.1)
+        ends += [np.array([values[moving[k]], rate[k]]) for k in (0, -1)]
+    leap: Look = {"color": palette.cycle, "linewidth": 1.4, "linestyle": LEAP_DASHES}
+    for before, after in zip(ends[1::2], [*ends[2::2], *ends[:1]], strict=True):
+        axes.plot(*np.stack([before, after]).T, zorder=5, **leap)
+    return [line_entry(f"{cycle.stability} cycle", **look)] if ends else []
+
+
+def _switching(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
+    """Upright lines where the mode that is shown is left."""
+    entries = []
+    for switching in portrait.switching:
+        look: Look = {"color": palette.switch, "linewidth": 1.6, "linestyle": (0.0, (5.0, 1.2))}
+        for line in switching.lines:
+            axes.axvline(float(line[0, 0]) / portrait.axes[0].unit.scale, zorder=2.5, **look)
+        if switching.lines:
+            entries.append(line_entry(f"{switching.mode} switches to {switching.target}", **look))
+    return entries
 
 
 def _cobweb(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
@@ -121,9 +159,11 @@ def _on_paper(values: Array, *, on_diagonal: bool) -> Array:
 
 
 def _basins(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
-    """Tinted stretches of the state, one tint an attractor."""
+    """Tinted stretches of the state, one tint an attractor; a cycle's even if it has it all."""
     basins = portrait.basins
-    if basins is None or max((a.share for a in basins.attractors), default=1.0) > ALL:
+    if basins is None or not basins.attractors:
+        return []
+    if max(a.share for a in basins.attractors) > ALL and not portrait.cycles:
         return []
     (state,) = portrait.axes
     labels = basins.labels
@@ -131,14 +171,17 @@ def _basins(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
     breaks = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), len(labels)]
     for a, b in pairwise(breaks):
         if labels[a] >= 0:
-            color = palette.tints[int(labels[a]) % len(palette.tints)]
-            axes.axvspan(edges[a], edges[b], color=color, linewidth=0.0, zorder=0)
+            axes.axvspan(
+                edges[a],
+                edges[b],
+                facecolor=tint(palette, int(labels[a])),
+                hatch=hatch(palette, int(labels[a])),
+                edgecolor=palette.slow,
+                linewidth=0.0,
+                zorder=0,
+            )
     return [
-        Entry(
-            f"goes to {attractor_name(portrait, a)}: {share_text(a.share)}",
-            (Patch(facecolor=palette.tints[k % len(palette.tints)], edgecolor=palette.faint),),
-        )
-        for k, a in enumerate(basins.attractors)
+        Entry(label, (basin_patch(palette, k),)) for k, label in enumerate(basin_labels(portrait))
     ]
 
 

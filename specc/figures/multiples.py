@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from specc.figures.areas import draw_shares
 from specc.figures.axes_of_states import same_scale
 from specc.figures.legend import Entry, draw_legend
 from specc.figures.line import draw_line
@@ -68,9 +69,13 @@ def draw_multiples(
             up = below + (rows - 1 - row) * (size[1] + ABOVE + GAP)
             axes = axes_at(figure, (left, up), size)
             axes.set_facecolor(palette.paper)
-            entries += _draw(Panel(axes, first.axes, palette, np.array(size), WEIGHT), portrait)
+            panel = Panel(axes, first.axes, palette, np.array(size), WEIGHT)
+            entries += _draw(panel, portrait)
+            draw_shares(panel, portrait)
             _name(axes, portrait, swept)
             _share_labels(axes, first_column=column == 0, last_row=k + columns >= len(portraits))
+        if len(first.axes) == 1 and first.every == 0.0:
+            _share_rates(figure.axes)
         corner = np.array([LEFT + width + GAP, below + height - ABOVE]) / figure.get_size_inches()
         draw_legend(figure, entries, (float(corner[0]), float(corner[1])))
         top = below + height + text.height - 0.12
@@ -100,6 +105,13 @@ def _name(axes: Axes, portrait: Portrait, swept: str) -> None:
     (held,) = (h for h in portrait.held if h.name == swept)
     value = held.label or quantity(held.value, held.unit)
     axes.set_title(f"{swept} = {value}", loc="left", fontsize=9.0, pad=4)
+
+
+def _share_rates(panels: Sequence[Axes]) -> None:
+    """One vertical scale for the rates of all panels, as only the left ones are labelled."""
+    ends = [axes.get_ylim() for axes in panels]
+    for axes in panels:
+        axes.set_ylim(min(low for low, _ in ends), max(high for _, high in ends))
 
 
 def _share_labels(axes: Axes, *, first_column: bool, last_row: bool) -> None:

@@ -23,7 +23,8 @@ class Palette:
     ink, faint, paper: text and axes, small print, ground. slow, fast: the field's lines at the
     lowest and the highest speed; `faster` is the word for the latter. nullcline, cycle, stable,
     unstable (branches of saddles), path, switch, alarm (what the tables invented or lost, and
-    boxes that could not be decided): lines. tints: grounds of basins, one after the other.
+    boxes that could not be decided): lines. tints: grounds of basins, one after the other; hatches:
+    what is drawn on them beside where greys alone don't tell, "" for nothing.
     settings: what matplotlib is told beside (fonts).
     """
 
@@ -41,6 +42,7 @@ class Palette:
     switch: str
     alarm: str
     tints: tuple[str, ...]
+    hatches: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
@@ -61,6 +63,8 @@ SERIF: Final = MappingProxyType(
         "ytick.labelsize": 10.0,
         "legend.fontsize": 10.0,
         "axes.linewidth": 0.6,
+        "hatch.color": "#8a8a8a",
+        "hatch.linewidth": 0.4,
         "xtick.direction": "in",
         "ytick.direction": "in",
     }
@@ -97,7 +101,8 @@ JOURNAL: Final = Palette(
     path="#4a4a4a",
     switch="#000000",
     alarm="#000000",
-    tints=("#ececec", "#fafafa", "#dcdcdc", "#f3f3f3", "#d0d0d0", "#e4e4e4"),
+    tints=("#e6e6e6", "#f7f7f7", "#dadada", "#f0f0f0", "#d0d0d0", "#ffffff"),
+    hatches=("", "...", "\\\\\\", "---", "xxx", "ooo"),
     settings=SERIF,
 )
 

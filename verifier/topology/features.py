@@ -216,7 +216,10 @@ class Basins:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Switching:
-    """Where a mode is left, and for which: polylines (k, 2) of a guard's zero."""
+    """Where a mode is left, and for which: polylines (k, 2) of a guard's zero.
+
+    On one axis points, each (1, 1).
+    """
 
     mode: str
     target: str

@@ -17,6 +17,7 @@ from verifier.topology.features import (
     Separatrix,
     Trajectory,
 )
+from verifier.topology.names import attractor_names
 
 FIELD_STRIDE = 4
 """Every which node of the portrait's grid is written."""
@@ -43,7 +44,7 @@ def as_json(portrait: Portrait) -> dict[str, object]:
         "lost": [_named(axes, zero) for zero in portrait.completeness.lost],
         "cycles": [_cycle(axes, cycle) for cycle in portrait.cycles],
         "separatrices": [_separatrix(axes, branch) for branch in portrait.separatrices],
-        "basins": None if portrait.basins is None else _basins(axes, portrait.basins),
+        "basins": None if portrait.basins is None else _basins(portrait, portrait.basins),
         "switching": [
             {"from": s.mode, "to": s.target, "lines": [_points(axes, line) for line in s.lines]}
             for s in portrait.switching
@@ -104,18 +105,23 @@ def _separatrix(axes: tuple[AxisRange, ...], branch: Separatrix) -> dict[str, ob
     }
 
 
-def _basins(axes: tuple[AxisRange, ...], basins: Basins) -> dict[str, object]:
+def _basins(portrait: Portrait, basins: Basins) -> dict[str, object]:
     """Shares, and the cells' labels: an index of `attractors`, -1 leaves, -2 not followed."""
     return {
         "attractors": [
-            {"of": "cycles" if a.is_cycle else "fixed_points", "index": a.index, "share": a.share}
-            for a in basins.attractors
+            {
+                "of": "cycles" if a.is_cycle else "fixed_points",
+                "index": a.index,
+                "name": name,
+                "share": a.share,
+            }
+            for a, name in zip(basins.attractors, attractor_names(portrait), strict=True)
         ],
         "leaves": basins.leaves,
         "open": basins.open,
         "centres": {
             a.name: [_short(v / a.unit.scale) for v in centres]
-            for a, centres in zip(axes, basins.centres, strict=True)
+            for a, centres in zip(portrait.axes, basins.centres, strict=True)
         },
         "labels": basins.labels.tolist(),
     }

@@ -7,10 +7,10 @@ branches cross, as their tangents show, the same is done, although there are as 
 type on both sides. S: samples.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final, final
+from typing import Final, TypeAlias, final
 
 import numpy as np
 
@@ -64,16 +64,26 @@ MOST_BETWEEN: Final = 4
 """Bifurcations that are told apart between two neighbours."""
 
 
+Progress: TypeAlias = Callable[[str, int, int], None]
+"""Called with what is done, how much of it is done, and of how much."""
+
+
+def in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""
+
+
 def find_branches(
     program: Program,
     control: str,
     held: Mapping[str, float],
     limits: tuple[float, float] | None = None,
     samples: int = SAMPLES,
+    progress: Progress = in_silence,
 ) -> Branches:
     """The branches along `control` (SI) from one limit to the other, everything else at `held`.
 
-    Without limits all over its domain.
+    Without limits all over its domain. `progress(what, done, of)` is called before each of the
+    even portraits; what is between them follows.
 
     Raises:
         SliceError: no control has this name, the limits are outside its domain, or nothing moves.
@@ -81,7 +91,12 @@ def find_branches(
     part = _control(program, control, held, limits)
     low, high = limits or (part.low, part.high)
     line = _Line(program, control, dict(held), (low, high), part.high - part.low)
-    values = line.regular(np.linspace(low, high, samples))
+    even = np.linspace(low, high, samples)
+    for k, value in enumerate(even.tolist()):
+        progress(f"portraits along {control}", k, samples)
+        line.everything(value)
+    progress("between them", samples, samples)
+    values = line.regular(even)
     found = line.bifurcations(values)
     places = sorted({*values, *(v for one in found for v in one.sides)})
     portraits = [line.everything(value) for value in places]

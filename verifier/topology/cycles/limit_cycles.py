@@ -59,7 +59,7 @@ CONTINUUM: Final = (
     "these are not listed as cycles"
 )
 SADDLES_UNSEEN: Final = (
-    "cycles that attract in some directions and repel in others are not looked for here"
+    "not all cycles that attract in some directions and repel in others may be found"
 )
 
 

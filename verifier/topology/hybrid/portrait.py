@@ -37,6 +37,11 @@ from verifier.topology.paths.seeds import spread
 from verifier.topology.slices import cut, rates_at, wrapped
 from verifier.topology.zeros.fixed_points import find_fixed_points
 
+FIELD_OF: Final = "the field is that of"
+OF_ALL: Final = "fixed points and cycles are those of all modes"
+OF_EACH_PANEL: Final = f"the field of each panel is that of its mode; {OF_ALL}"
+"""The note on a portrait among those of all modes."""
+
 LASTING: Final = 4.0
 """How long paths are followed, in tempos."""
 SAMPLES: Final = 400
@@ -78,7 +83,7 @@ def with_modes(
     closed = (*through, *(cycle for one in each for cycle in one.cycles))
     closed = tuple(sorted(closed, key=lambda cycle: cycle.period))
     resting = tuple((point, one.mode) for one in each for point in one.fixed_points)
-    planar = len(hybrid.view.axes) == 2
+    flat = len(hybrid.view.axes) <= 2
     return replace(
         plain,
         fixed_points=tuple(point for point, _ in resting),
@@ -86,7 +91,7 @@ def with_modes(
         cycles=closed,
         separatrices=(),
         basins=find_hybrid_basins(hybrid, resting, closed, basins),
-        switching=tuple(_lines(hybrid, grid)) if planar else (),
+        switching=tuple(_lines(hybrid, grid)) if flat else (),
         trajectories=tuple(_paths(hybrid, paths)) if len(hybrid.view.axes) > 1 and paths else (),
         notes=(
             _about(hybrid),
@@ -100,9 +105,7 @@ def with_modes(
 
 def _about(hybrid: Hybrid) -> str:
     mode, shown = hybrid.flow.program.field.mode, hybrid.modes[hybrid.shown]
-    return (
-        f"the field is that of {mode} = '{shown}'; fixed points and cycles are those of all modes"
-    )
+    return f"{FIELD_OF} {mode} = '{shown}'; {OF_ALL}"
 
 
 def _where(hybrid: Hybrid, point: FixedPoint, mode: int) -> str:
@@ -171,8 +174,19 @@ def _lines(hybrid: Hybrid, grid: Grid) -> Iterator[Switching]:
     places = np.stack(np.meshgrid(*grid.nodes, indexing="ij"), axis=-1)
     values = conditions(hybrid, guards, points_in(hybrid, places, hybrid.shown))
     for i, guard in enumerate(guards):
-        lines = tuple(frozen(line) for line in zero_lines(grid.nodes, values[..., i]))
+        lines = tuple(frozen(line) for line in _zeros(grid, values[..., i]))
         yield Switching(hybrid.modes[guard.mode], hybrid.modes[guard.target], lines)
+
+
+def _zeros(grid: Grid, values: Array) -> list[Array]:
+    """Where values on the grid are zero: lines (k, 2), on one axis single points (1, 1)."""
+    if len(grid.nodes) == 2:
+        return zero_lines(grid.nodes, values)
+    (nodes,) = grid.nodes
+    left = np.flatnonzero((values[:-1] >= 0.0) != (values[1:] >= 0.0))
+    share = values[left] / (values[left] - values[left + 1])
+    at = nodes[left] + share * (nodes[left + 1] - nodes[left])
+    return [place.reshape(1, 1) for place in at]
 
 
 def _paths(hybrid: Hybrid, count: int) -> Iterator[Trajectory]:
