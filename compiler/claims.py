@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
+from compiler.claim_text import claim_text
 from compiler.claim_values import ClaimReader
 from compiler.declare import Declarations
 from compiler.findings import Findings
@@ -39,7 +40,8 @@ def lower_claims(
             _check_references(sentence, claim.options, claims, path, findings)
             reader = ClaimReader(spec, declared, findings, path)
             origin = loaded.origin(("expect", index))
-            claims.append(_claim(sentence, claim, reader, origin))
+            text = claim_text(claim, declared.units)
+            claims.append(_claim(sentence, claim, reader, text, origin))
     return tuple(claims)
 
 
@@ -67,11 +69,13 @@ def _sentence(claim: ClaimSpec, path: Path, findings: Findings) -> Sentence | No
         return None
 
 
-def _claim(sentence: Sentence, claim: ClaimSpec, reader: ClaimReader, origin: str) -> Claim:
+def _claim(
+    sentence: Sentence, claim: ClaimSpec, reader: ClaimReader, text: str, origin: str
+) -> Claim:
     options = claim.options
     period = reader.period(options)
     return Claim(
-        text=claim.sentence,
+        text=text,
         feature=sentence.feature,
         least=sentence.least,
         most=sentence.most,

@@ -320,7 +320,7 @@ class Span:
 class Claim:
     """A claim about the topology of the field: how many features of a type there are, and where.
 
-    text: the sentence as its author wrote it.
+    text: the sentence as its author wrote it, with its conditions but `over`.
     feature: a type or group of features: `saddle`, `attractor`, `stable cycle`...
     least, most: how many; `most` is None for no limit.
     other: only what no claim above it has named is counted.

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from runtime.program import Control, Program, State
@@ -21,14 +21,16 @@ STYLES: Final = {
 
 def finding_text(program: Program, finding: Finding) -> str:
     """A claim and what was found of it, in a few lines."""
-    head = f"{finding.claim.origin}: {finding.ruling}: {finding.claim.text}"
-    lines = [f"{head}{_span_words(program, finding)}", f"  {finding.sentence}", f"  {finding.how}"]
+    head = f"{finding.claim.origin}: {finding.ruling}: {_claim_words(program, finding)}"
+    lines = [head, f"  {finding.sentence}", f"  {finding.how}"]
     witness = finding.witness
     if witness is not None:
-        settings = settings_words(program, witness.settings) or "there are no controls"
+        settings = settings_words(program, witness.settings)
         place = settings_words(program, witness.place)
-        lines.append(f"  witness: {settings}" + (f"; at {place}" if place else ""))
-    lines += [f"  {_boundary_text(program, boundary)}" for boundary in finding.boundaries]
+        at = f"at {place}" if place else ""
+        if settings or at:
+            lines.append(f"  witness: {'; '.join(words for words in (settings, at) if words)}")
+    lines += [f"  {line}" for line in _boundary_lines(program, finding.boundaries)]
     return "\n".join(lines)
 
 
@@ -45,7 +47,7 @@ def finding_record(program: Program, finding: Finding) -> dict[str, object]:
     claim, witness = finding.claim, finding.witness
     return {
         "behavior": program.name,
-        "claim": claim.text,
+        "claim": _claim_words(program, finding),
         "origin": claim.origin,
         "ruling": str(finding.ruling),
         "sentence": finding.sentence,
@@ -66,24 +68,65 @@ def _in_total(ruling: Ruling, count: int) -> str:
     return "hold" if ruling is Ruling.HOLDS_SAMPLED and count > 1 else str(ruling)
 
 
-def _span_words(program: Program, finding: Finding) -> str:
+def _claim_words(program: Program, finding: Finding) -> str:
+    """The claim with all its conditions."""
     parts = _parts(program)
     spans = [
         f"{span.control} from {value_words(parts[span.control], span.low)} "
         f"to {value_words(parts[span.control], span.high)}"
         for span in finding.claim.over
     ]
-    return f", {' and '.join(spans)}" if spans else ""
+    return f"{finding.claim.text}, over {' and '.join(spans)}" if spans else finding.claim.text
 
 
-def _boundary_text(program: Program, boundary: Boundary) -> str:
+def _boundary_lines(program: Program, boundaries: Sequence[Boundary]) -> Iterator[str]:
+    """A line for each interval of a control on which the claim holds."""
+    waiting: Boundary | None = None
+    for boundary in boundaries:
+        if waiting is not None and (boundary.above or boundary.control != waiting.control):
+            yield _one_sided(program, waiting)
+            waiting = None
+        if boundary.above:
+            waiting = boundary
+        elif waiting is not None:
+            yield _two_sided(program, waiting, boundary)
+            waiting = None
+        else:
+            yield _one_sided(program, boundary)
+    if waiting is not None:
+        yield _one_sided(program, waiting)
+
+
+def _one_sided(program: Program, boundary: Boundary) -> str:
+    side, other = ("above", "below") if boundary.above else ("below", "above")
+    text = f"holds for {boundary.control} {side} {_edge(program, boundary)}"
+    text += f" (± {_known(program, boundary)})"
+    if boundary.change is Change.OTHER:
+        return f"{text}; {other}: {boundary.about}"
+    return f"{text}: {boundary.change}, {boundary.about}"
+
+
+def _two_sided(program: Program, low: Boundary, high: Boundary) -> str:
+    ends = [_edge(program, low), _edge(program, high)]
+    rough = max(low, high, key=lambda boundary: boundary.within)
+    text = f"holds for {low.control} from {ends[0]} to {ends[1]} (± {_known(program, rough)})"
+    for boundary, end in zip((low, high), ends, strict=True):
+        if boundary.change is Change.OTHER:
+            text += f"; {'below' if boundary.above else 'above'} {end}: {boundary.about}"
+        else:
+            text += f"; at {end}: {boundary.change}, {boundary.about}"
+    return text
+
+
+def _edge(program: Program, boundary: Boundary) -> str:
+    """Where it is, in as many digits as are known."""
     part = _parts(program)[boundary.control]
-    side = "above" if boundary.above else "below"
     step = 10.0 ** math.floor(math.log10(boundary.within)) if boundary.within > 0.0 else 1e-12
-    value = value_words(part, step * round(boundary.value / step))
-    known = f"± {boundary.within / part.unit.scale:.1g}"
-    what = "" if boundary.change is Change.OTHER else f"{boundary.change}, "
-    return f"holds for {boundary.control} {side} {value} ({known}): {what}{boundary.about}"
+    return value_words(part, step * round(boundary.value / step))
+
+
+def _known(program: Program, boundary: Boundary) -> str:
+    return f"{boundary.within / _parts(program)[boundary.control].unit.scale:.1g}"
 
 
 def _boundary_record(program: Program, boundary: Boundary) -> dict[str, object]:

@@ -1,5 +1,6 @@
 """The commands, in the order in which a user meets them, and how a failure ends."""
 
+import sys
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -11,7 +12,7 @@ from spec_schema.diagnostics import SpecError
 from specc.cli.check import check
 from specc.cli.compare import compare
 from specc.cli.compile import compile_
-from specc.cli.console import say, show_diagnostics
+from specc.cli.console import print_json, say, show_diagnostics
 from specc.cli.init import init
 from specc.cli.portrait import portrait
 from specc.cli.schema import schema
@@ -21,7 +22,7 @@ from specc.cli.verify import verify
 
 EPILOG = (
     "Exit status: 0 yes, 1 no (not faithful), 2 bad spec, trace or usage, "
-    "3 a bug in specc, 4 inconclusive."
+    "3 a bug in specc, 4 inconclusive, 130 interrupted."
 )
 
 app = typer.Typer(
@@ -67,7 +68,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
     try:
         outcome = app(args=arguments, standalone_mode=False)
     except SpecError as error:
-        show_diagnostics(error.diagnostics)
+        if _wants_json(sys.argv[1:] if arguments is None else arguments):
+            print_json([diagnostic.as_json() for diagnostic in error.diagnostics])
+        else:
+            show_diagnostics(error.diagnostics)
         return Status.BAD_INPUT
     except typer.Abort:
         raise KeyboardInterrupt from None
@@ -79,3 +83,12 @@ def run(arguments: Sequence[str] | None = None) -> int:
         say(f"{error.filename}: {error.strerror}" if error.filename else str(error), "bold red")
         return Status.BAD_INPUT
     return outcome if isinstance(outcome, int) else Status.YES
+
+
+def _wants_json(arguments: Sequence[str]) -> bool:
+    """Whether the command prints for programs: then they get its diagnostics, too."""
+    pairs = zip(arguments, [*arguments[1:], ""], strict=True)
+    return any(
+        one in {"--format=json", "-fjson"} or (one in {"--format", "-f"} and value == "json")
+        for one, value in pairs
+    )

@@ -1,13 +1,13 @@
 """`specc check`: every mistake at once, and on demand every claim."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, final
 
 import typer
 
-from specc.cli.console import print_json, print_styled, progress_bar, say, show_diagnostics
+from specc.cli.console import print_json, print_styled, say, show_diagnostics, shown_bar
 from specc.cli.status import Status
 from specc.cli.warming import warmed
 
@@ -60,10 +60,11 @@ def check(
     failed = any(d.severity == "error" for d in found)
     if claims and not failed:
         show_diagnostics(found)
-        return _check_claims(files, form)
+        return _check_claims(files, form, [d.as_json() for d in found])
     match form:
         case CheckFormat.JSON:
-            print_json([d.as_json() for d in found])
+            mistakes = [d.as_json() for d in found]
+            print_json({"mistakes": mistakes, "claims": []} if claims else mistakes)
         case CheckFormat.GITHUB:
             for d in found:
                 typer.echo(_annotation(d.as_json()))
@@ -74,46 +75,78 @@ def check(
     return Status.BAD_INPUT if failed else Status.YES
 
 
-def _check_claims(files: Sequence[Path], form: CheckFormat) -> int:
-    """Put the claims of sound specs to the judge: 1 where one is refuted, 4 where one is open."""
-    from specc.claims_text import finding_record
+def _check_claims(
+    files: Sequence[Path], form: CheckFormat, mistakes: list[dict[str, object]]
+) -> int:
+    """Put the claims of sound specs to the judge: 1 where one is refuted, 4 where one is open.
+
+    Each is printed as soon as it is decided; 130 where the user does not wait for the rest.
+    """
+    from specc.claims_text import finding_record, totals_text
 
     warmed(None)
-    found = [(program, one) for file in files for program, one in _judged(file)]
+    found: list[tuple[Program, Finding]] = []
+    interrupted = False
+    try:
+        for program, finding in _judged(files, form):
+            found.append((program, finding))
+    except KeyboardInterrupt:
+        interrupted = True
     if form is CheckFormat.JSON:
-        print_json([finding_record(program, finding) for program, finding in found])
-    else:
-        _print_claims(found, form)
+        records = [finding_record(program, finding) for program, finding in found]
+        print_json({"mistakes": mistakes, "claims": records})
+    if form is not CheckFormat.JSON or interrupted:
+        say(totals_text([finding for _, finding in found]), "bold")
+    if interrupted:
+        say(f"interrupted; {_unjudged(files, found)} not judged", "bold yellow")
+        return Status.INTERRUPTED
     rulings = {str(finding.ruling) for _, finding in found}
     if "refuted" in rulings:
         return Status.NO
     return Status.INCONCLUSIVE if "undecided" in rulings else Status.YES
 
 
-def _judged(file: Path) -> "list[tuple[Program, Finding]]":
+def _judged(files: Sequence[Path], form: CheckFormat) -> "Iterator[tuple[Program, Finding]]":
+    """The claims of all specs, each printed for people once it is decided."""
+    from specc.loading import load_program
+    from verifier.topology.claims.judge import judged
+
+    for file in files:
+        if not _claims_in(file):
+            continue
+        with shown_bar(file.name) as bar:
+            program = load_program(file)
+            for finding in judged(program, None, bar.advance):
+                with bar.aside():
+                    _print_claim(program, finding, form)
+                yield program, finding
+
+
+def _claims_in(file: Path) -> int:
+    """How many claims the author of a spec made."""
     from spec_schema.behavior import BehaviorSpec
     from spec_schema.load import load
-    from specc.claiming import check_claims
-    from specc.loading import load_program
 
     spec = load(file).spec
-    if not isinstance(spec, BehaviorSpec) or not spec.expect:
-        return []
-    program = load_program(file)
-    with progress_bar(file.name) as progress:
-        return [(program, finding) for finding in check_claims(program, progress)]
+    return len(spec.expect) if isinstance(spec, BehaviorSpec) else 0
 
 
-def _print_claims(found: "list[tuple[Program, Finding]]", form: CheckFormat) -> None:
-    from specc.claims_text import STYLES, finding_text, totals_text
+def _unjudged(files: Sequence[Path], found: "Sequence[tuple[Program, Finding]]") -> str:
+    """How many of the claims that authors made are left: `2 claims were`."""
+    made = sum(not finding.claim.sketched for _, finding in found)
+    left = sum(_claims_in(file) for file in files) - made
+    return f"{left} claim was" if left == 1 else f"{left} claims were"
 
-    for program, finding in found:
+
+def _print_claim(program: "Program", finding: "Finding", form: CheckFormat) -> None:
+    from specc.claims_text import STYLES, finding_text
+
+    if form is CheckFormat.TEXT:
         text = finding_text(program, finding)
-        if form is CheckFormat.TEXT:
-            print_styled(text, f": {finding.ruling}: ", STYLES[finding.ruling])
-        elif not finding.ruling.holds:
-            typer.echo(_claim_annotation(finding.claim.origin, str(finding.ruling), text))
-    say(totals_text([finding for _, finding in found]), "bold")
+        print_styled(text, f": {finding.ruling}: ", STYLES[finding.ruling])
+    elif form is CheckFormat.GITHUB and not finding.ruling.holds:
+        text = finding_text(program, finding)
+        typer.echo(_claim_annotation(finding.claim.origin, str(finding.ruling), text))
 
 
 def _specs(count: int) -> str:

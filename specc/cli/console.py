@@ -4,6 +4,7 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import final
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -67,14 +68,57 @@ def _coloured(diagnostic: Diagnostic) -> Text:
     return text
 
 
+@final
+class Bar:
+    """A bar on standard error that steps aside while something is printed."""
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        console = messages()
+        self._shown = console.is_interactive
+        self._bar = Progress(
+            *columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False
+        )
+        self._task = self._bar.add_task(title, total=None)
+
+    def advance(self, what: str, done: int, total: int) -> None:
+        """What is being done, how much is done, and of how much."""
+        self._bar.update(
+            self._task, description=f"{self._title}: {what}", completed=done, total=total
+        )
+
+    def start(self) -> None:
+        """Show it, where somebody looks: elsewhere even an empty bar leaves a line."""
+        if self._shown:
+            self._bar.start()
+
+    def stop(self) -> None:
+        """Take it away."""
+        if self._shown:
+            self._bar.stop()
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """While something else is printed."""
+        self.stop()
+        yield
+        self.start()
+
+
+@contextmanager
+def shown_bar(title: str) -> Iterator[Bar]:
+    """A bar while something is worked out; none where standard error is no terminal."""
+    bar = Bar(title)
+    bar.start()
+    try:
+        yield bar
+    finally:
+        bar.stop()
+
+
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[[str, int, int], None]]:
     """A bar on standard error; what it yields takes (what, done, of how many)."""
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=messages(), transient=True) as bar:
-        task = bar.add_task(title, total=None)
-
-        def advance(what: str, done: int, total: int) -> None:
-            bar.update(task, description=f"{title}: {what}", completed=done, total=total)
-
-        yield advance
+    with shown_bar(title) as bar:
+        yield bar.advance

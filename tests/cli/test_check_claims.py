@@ -2,10 +2,13 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from specc.cli import main
+from verifier.topology.claims import judge
+from verifier.topology.claims.findings import Finding
 
 FOLD = """
 specc: 1
@@ -75,7 +78,10 @@ def test_what_does_not_hold_is_annotated_at_its_line(capsys: pytest.CaptureFixtu
 
 def test_records_name_claim_ruling_and_witness(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--claims", written(HOLDS, FAILS), "--format", "json"]) == 1
-    holds, fails = json.loads(capsys.readouterr().out)
+    printed = json.loads(capsys.readouterr().out)
+    holds, fails = printed["claims"]
+
+    assert printed["mistakes"] == []
 
     assert (holds["ruling"], holds["proved_share"], holds["witness"]) == ("proved", 1.0, None)
     assert fails["ruling"] == "refuted"
@@ -86,3 +92,60 @@ def test_records_name_claim_ruling_and_witness(capsys: pytest.CaptureFixture[str
 def test_compile_says_that_claims_are_not_checked(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["compile", written(HOLDS, FAILS)]) == 0
     assert "2 claims not checked: run `specc check --claims fold.yaml`" in capsys.readouterr().out
+
+
+def test_a_mistake_is_told_from_a_claim_in_a_record(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--claims", written(WRONG), "--format", "json"]) == 2
+    printed = json.loads(capsys.readouterr().out)
+
+    assert printed["claims"] == []
+    assert [one["code"] for one in printed["mistakes"]] == ["S271"]
+
+
+@pytest.mark.parametrize("command", [["compile"], ["portrait"], ["compare", "fold.yaml"]])
+@pytest.mark.parametrize("form", [["--format", "json"], ["--format=json"], ["-f", "json"]])
+def test_programs_get_a_specs_mistakes_as_records(
+    command: list[str], form: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*command, written(WRONG), *form]) == 2
+    out, err = capsys.readouterr()
+
+    assert [one["code"] for one in json.loads(out)] == ["S271"]
+    assert not err
+
+
+def test_each_claim_is_printed_with_its_conditions_as_soon_as_it_is_decided(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spec = written(
+        "  - one stable node: {at: {x: sqrt(pull/b)}, within: 2 %, over: [pull]}\n", FAILS, HOLDS
+    )
+
+    def impatient(*arguments: Any) -> Finding:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(judge, "_judged_at", impatient)
+
+    assert main(["check", "--claims", spec]) == 130
+    out, err = capsys.readouterr()
+    assert "one stable node at x = sqrt(pull/b) (within 2 %), over pull from -1 m/s to 1" in out
+    assert err.splitlines() == ["1 claim: 1 refuted", "interrupted; 2 claims were not judged"]
+
+
+def test_the_example_of_a_claim_over_controls_says_where_it_is(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["check", "--claims", written(HOLDS)]) == 0
+    assert "\n  at the defaults: 1 stable node at x = 0.70711 m\n" in capsys.readouterr().out
+
+
+def test_a_claim_that_holds_on_an_interval_names_both_its_ends(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    claim = "  - one stable node: {at: {x: 0.5}, within: {x: 1 dm}, over: [pull]}\n"
+
+    assert main(["check", "--claims", written(claim)]) == 1
+    [line] = [line for line in capsys.readouterr().out.splitlines() if "holds for" in line]
+    assert line.startswith("  holds for pull from 0.16 m/s to 0.36 m/s (± ")  # 0.4² to 0.6²
+    assert "; below 0.16 m/s: expected exactly 1" in line
+    assert "; above 0.36 m/s: expected exactly 1" in line

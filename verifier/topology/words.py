@@ -50,7 +50,8 @@ def listed_features(seen: Portrait) -> str:
     )
     if not kinds:
         return "there is no fixed point and no cycle"
-    return "there is " + ", ".join(
+    verb = "is" if kinds.total() == 1 else "are"
+    return f"there {verb} " + ", ".join(
         f"{count} {plural(kind, count)}" for kind, count in kinds.items()
     )
 

@@ -5,48 +5,58 @@ controls is proved box by box where it speaks of fixed points alone, and sampled
 one value of a control and fails at another, the boundary is located.
 """
 
-from collections.abc import Callable
-from typing import Final, TypeAlias
+from collections.abc import Iterator
+from typing import Final
 
 from runtime.program import Claim, Program
 from verifier.topology.claims.at_settings import Outcome, Verdict, verdict_at
 from verifier.topology.claims.findings import Finding, Ruling, Witness
 from verifier.topology.claims.over_boxes import covered_by_proof
 from verifier.topology.claims.over_controls import judged_over
+from verifier.topology.claims.watching import Progress, Watch, in_silence
 from verifier.topology.features import Settings
 from verifier.topology.scenes import Scenes
 from verifier.topology.slices import SliceError
 from verifier.topology.words import settings_words
 
-Progress: TypeAlias = Callable[[str, int, int], None]
-
-
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
+PARTS: Final = 1000
+"""Of the work on a claim, for its progress."""
 
 
 def judge(
     program: Program,
     claims: tuple[Claim, ...] | None = None,
-    progress: Progress = _in_silence,
+    progress: Progress = in_silence,
 ) -> tuple[Finding, ...]:
     """What is found of each claim, in their order; those of the program where none are given.
 
-    `progress(what, done, of)` is called before each.
+    `progress(what, done, of)` is called on the way.
     """
+    return tuple(judged(program, claims, progress))
+
+
+def judged(
+    program: Program,
+    claims: tuple[Claim, ...] | None = None,
+    progress: Progress = in_silence,
+) -> Iterator[Finding]:
+    """The same, each as soon as it is decided."""
     asked = program.claims if claims is None else claims
     scenes = Scenes(program)
-    findings = []
     for index, claim in enumerate(asked):
-        progress(claim.text, index, len(asked))
-        findings.append(_judged(scenes, claim, asked[:index]))
-    return tuple(findings)
+        whole = PARTS * len(asked)
+
+        def watch(share: float, text: str = claim.text, done: int = index, of: int = whole) -> None:
+            progress(text, round(PARTS * (done + share)), of)
+
+        watch(0.0)
+        yield _judged(scenes, claim, asked[:index], watch)
 
 
-def _judged(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> Finding:
+def _judged(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], watch: Watch) -> Finding:
     try:
         if claim.over:
-            return judged_over(scenes, claim, above)
+            return judged_over(scenes, claim, above, watch)
         return _judged_at(scenes, claim, above)
     except SliceError as error:
         return Finding(claim, Ruling.UNDECIDED, str(error), "nothing was looked at", 0.0, None, ())

@@ -5,6 +5,7 @@ those that a claim counts is the same for the whole box, the claim is decided th
 box is halved. Whether a point turns is decided by its Jacobian's discriminant. k: zeros; m: axes.
 """
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from itertools import product
@@ -19,6 +20,7 @@ from runtime.jets import SURE, Jet, constant
 from runtime.program import Claim, Program
 from verifier.topology.claims.at_settings import BASIN, Outcome
 from verifier.topology.claims.members import POINTS, Fit
+from verifier.topology.claims.watching import Watch, unwatched
 from verifier.topology.claims.zero_bounds import Moving, zero_within
 from verifier.topology.features import PointKind, Settings
 from verifier.topology.scenes import Scenes
@@ -72,8 +74,12 @@ class _Box:
 NOTHING: Final = Covered(0.0, "", ())
 
 
-def covered_by_proof(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> Covered:
+def covered_by_proof(
+    scenes: Scenes, claim: Claim, above: tuple[Claim, ...], watch: Watch = unwatched
+) -> Covered:
     """The share of the claim's domain on which it is proved; 1 or 0 where it has no `over`.
+
+    `watch(share)` is called with the share of the work that is done.
 
     Nothing is proved of a field with modes: the zeros of one mode need not be reached.
 
@@ -88,6 +94,7 @@ def covered_by_proof(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> 
         prover = _Prover(scenes, claim, box)
         tried, work = tried + 1, work + prover.work
         outcome = prover.outcome(above)
+        watch(max(work / WORK, proved))
         about = prover.about
         if outcome is Outcome.HOLDS:
             proved += box.share
@@ -133,7 +140,7 @@ def _how(about: str, claim: Claim, share: float, tried: int) -> str:
     if not claim.over:
         return by
     names = ", ".join(span.control for span in claim.over)
-    part = "all" if share == 1.0 else f"{100.0 * share:.3g} %"
+    part = "all" if share == 1.0 else f"{math.floor(1000.0 * share) / 10.0:g} %"
     return f"{by}, for {part} of the domain of {names}, in {tried} pieces"
 
 
@@ -199,7 +206,8 @@ class _Prover:
 
     def _fit(self, claim: Claim, i: int) -> Fit:
         """Whether zero i is one of those that a claim speaks of, for all controls of the box."""
-        return min(self._type(claim, i), self._place(claim, i))
+        of_type = self._type(claim, i)
+        return of_type if of_type is Fit.NO else min(of_type, self._place(claim, i))
 
     def _type(self, claim: Claim, i: int) -> Fit:
         wanted = POINTS.get(claim.feature, frozenset())
@@ -236,6 +244,10 @@ class _Prover:
         if not claim.places:
             return Fit.YES
         zero, radius = self._proof.zeros[i], self._proof.radii[i]
+        resting = Moving.resting(zero - radius, zero + radius)
+        clear = self._placed(claim, self._controls, resting)
+        if clear is not Fit.MAYBE:
+            return clear
         waiting = deque([(self._controls, zero - radius, zero + radius)])
         fits: set[Fit] = set()
         for _ in range(MOST_CUTS):

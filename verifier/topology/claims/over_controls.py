@@ -15,9 +15,11 @@ from verifier.topology.branches.boundaries import CLOSE, COARSE, Bracket, explai
 from verifier.topology.claims.at_settings import BASIN, Outcome, Verdict, needs_cycles, verdict_at
 from verifier.topology.claims.findings import Boundary, Finding, Ruling, Witness
 from verifier.topology.claims.over_boxes import Covered, covered_by_proof
+from verifier.topology.claims.watching import Watch, part, unwatched
 from verifier.topology.features import Portrait, Settings
 from verifier.topology.paths.seeds import GENERATORS
 from verifier.topology.scenes import Scenes
+from verifier.topology.words import settings_words
 
 MOST_CORNERS: Final = 4
 """The corners of a domain of more controls than this are not all looked at."""
@@ -37,15 +39,28 @@ NUDGE: Final = 0.00314
 """How far a sample is moved that falls on a bifurcation, as a share of the interval."""
 
 
-def judged_over(scenes: Scenes, claim: Claim, above: tuple[Claim, ...]) -> Finding:
-    """What is found of a claim that holds over a domain of controls, or does not."""
+LOOKING: Final = 0.5
+"""The share of the work on a claim until all samples are looked at."""
+
+
+def judged_over(
+    scenes: Scenes, claim: Claim, above: tuple[Claim, ...], watch: Watch = unwatched
+) -> Finding:
+    """What is found of a claim that holds over a domain of controls, or does not.
+
+    `watch(share)` is called with the share of the work that is done.
+    """
     look = _Look(scenes, claim, above)
     settings = look.samples()
+    looking = part(watch, 0.0, LOOKING)
+    for index, one in enumerate(settings):
+        look.at(one)
+        looking((index + 1) / len(settings))
     failing = look.those(settings, Outcome.FAILS)
     if failing:
         return _refuted(look, failing, len(settings))
-    covered = covered_by_proof(scenes, claim, above)
-    sentence = look.at(look.default()).sentence
+    covered = covered_by_proof(scenes, claim, above, part(watch, LOOKING, 1.0))
+    sentence = f"{look.example_words()}: {look.at(look.default()).sentence}"
     if covered.share == 1.0:
         return Finding(claim, Ruling.HOLDS_PROVED, sentence, covered.how, 1.0, None, ())
     failing = look.those(covered.failing, Outcome.FAILS)
@@ -131,6 +146,17 @@ class _Look:
                 for span in self.claim.over
             ]
         )
+
+    def example_words(self) -> str:
+        """Where the example is that a sentence gives: `at the defaults`."""
+        settings = self.default()
+        if all(
+            value == self._controls[name].default
+            for name, value in settings
+            if name in self._controls
+        ):
+            return "at the defaults"
+        return f"at {settings_words(self._scenes.program, settings)}"
 
     def samples(self) -> list[Settings]:
         """Where the claim is looked at: the default first, then ends and corners, then between."""

@@ -25,6 +25,9 @@ CONTRACTIONS: Final = 4
 ENOUGH: Final = 0.8
 """A contraction that leaves more than this share is the last."""
 
+CLOSE: Final = 1e-6
+"""Newton's method stops at steps of this share of the bounds: anything is allowed."""
+
 STEPS: Final = 3
 """Steps of Newton's method to the zero at the middle of the controls."""
 
@@ -45,6 +48,15 @@ class Moving:
     controls: tuple[str, ...]
     middle: Array
     off: Interval
+
+    @staticmethod
+    def resting(low: Array, high: Array) -> "Moving":
+        """A zero anywhere in low to high (m,), however it moves there."""
+        centre = 0.5 * (low + high)
+        nowhere = exactly(np.empty(0))
+        box = Interval(low, high)
+        rest = subtract(box, exactly(centre))
+        return Moving(centre, np.empty((len(low), 0)), rest, box, (), nowhere.low, nowhere)
 
 
 def zero_within(view: Slice, controls: Array, low: Array, high: Array) -> Moving:
@@ -77,7 +89,10 @@ def _newton(still: Enclosure, low: Array, high: Array) -> Array:
         f, J = changes(still, at[None], at[None]), slopes(still, at[None], at[None])
         with np.errstate(invalid="ignore"):
             step = (inverses_of(J) @ (0.5 * (f.low + f.high))[..., None])[0, :, 0]
+        before = at
         at = np.where(np.isfinite(step), np.clip(at - step, low, high), at)
+        if np.all(np.abs(at - before) <= CLOSE * (high - low)):
+            break
     return at
 
 
