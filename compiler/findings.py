@@ -40,6 +40,10 @@ class Findings:
         """`file:line:column` of the key at `path`."""
         return self._loaded.origin(path)
 
+    def written(self, path: Path) -> Path:
+        """The path in the text, where lists may have items that were refused."""
+        return self._loaded.places.written(path)
+
     def error(self, code: str, path: Path, message: str, remedy: str, *, key: bool = False) -> None:
         """Add an error at the value of `path`, or at its key."""
         self._found.append(self._loaded.error(code, path, message, remedy, key=key))

@@ -70,6 +70,7 @@ class SpecError(Exception):
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = in_file_order(diagnostics)
+        assert self.diagnostics, "what is refused without a word can't be mended"
         super().__init__(render(self.diagnostics))
 
 

@@ -25,6 +25,11 @@ _WANTED = {
     "model_type": "a mapping",
     "model_attributes_type": "a mapping",
 }
+_TRUTHS = {
+    **dict.fromkeys(("yes", "on", "y", "true"), "true"),
+    **dict.fromkeys(("no", "off", "n", "false"), "false"),
+}
+"""What YAML 1.1 took for a truth value, and what it is called now."""
 _BOUNDS = {
     "greater_than": ("gt", "more than"),
     "greater_than_equal": ("ge", "at least"),
@@ -45,7 +50,7 @@ def mistakes_of(model: type[BaseModel], error: ErrorDetails) -> Iterator[Mistake
             where = (*path, *found.at)
             yield Mistake(found.code, found.message, found.help, where, found.on_key or at_key)
         return
-    if error["type"] == "too_short" and error["input"]:
+    if error["type"] == "too_short" and len(error["input"]) >= context["min_length"]:
         return  # pydantic does not count the items that are wrong themselves
     yield _mistake(model, error["type"], path, error["input"], context) or Mistake(
         "S103", f"{error['msg'][:1].lower()}{error['msg'][1:]}", "", path
@@ -66,7 +71,7 @@ def _mistake(
     elif kind in _WANTED:
         found = _wrong_type(model, kind, path, got)
     elif kind in {"too_short", "too_long"}:
-        found = _wrong_length(model, path, got)
+        found = _wrong_length(model, path, got, context)
     elif kind in _BOUNDS:
         found = _out_of_bounds(model, kind, path, got, context)
     return found
@@ -114,11 +119,22 @@ def _wrong_type(model: type[BaseModel], kind: str, path: Path, got: Any) -> Mist
     message = f"expected {_WANTED[kind]}, got {described(got)}"
     if kind == "string_type" and isinstance(got, bool | int | float):
         return Mistake("S103", message, f'put it in quotes: "{described(got).split()[-1]}"', path)
+    if kind == "bool_type":
+        meant = _TRUTHS.get(got.lower()) if isinstance(got, str) else None
+        return Mistake("S103", message, f"write {meant or 'true or false'}", path)
     return Mistake("S103", message, _write(model, path), path)
 
 
-def _wrong_length(model: type[BaseModel], path: Path, got: Any) -> Mistake:
+def _wrong_length(model: type[BaseModel], path: Path, got: Any, context: dict[str, Any]) -> Mistake:
     what = "mapping" if isinstance(got, dict) else "list"
+    if got:
+        limit, words = (
+            (context["min_length"], "at least")
+            if "min_length" in context
+            else (context["max_length"], "at most")
+        )
+        message = f"{quoted(str(path[-1]))} takes {words} {limit} (got {len(got)})"
+        return Mistake("S262", message, _write(model, path), path)
     return Mistake("S110", f"{quoted(str(path[-1]))} is an empty {what}", _write(model, path), path)
 
 

@@ -1,11 +1,18 @@
 """A field drawn by its features: closed orbits, points, separatrices, and arrows beside them."""
 
-from collections.abc import Iterator
-from typing import Annotated, Literal, Self, TypeAlias, final
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal, Self, TypeAlias, final
 
-from pydantic import Field, Strict, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    ModelWrapValidatorHandler,
+    Strict,
+    ValidationError,
+    model_validator,
+)
 
-from spec_schema.mistake import Mistake, refuse
+from spec_schema.mistake import Mistake, refuse, refused, together
 from spec_schema.value_types import Identifier, Name, Number, Quantity, StrictModel
 from spec_schema.wording import counted, listed, quoted
 
@@ -14,6 +21,24 @@ Spot: TypeAlias = Annotated[tuple[Quantity, ...], Strict(strict=False), Field(mi
 
 Spots: TypeAlias = Annotated[tuple[Spot, ...], Strict(strict=False), Field(min_length=1)]
 Quantities: TypeAlias = Annotated[tuple[Quantity, ...], Strict(strict=False), Field(min_length=1)]
+
+
+def _closed(through: tuple[Spot, ...]) -> tuple[Spot, ...]:
+    if 0 < len(through) < LEAST:
+        message = f"an orbit has at least {LEAST} vertices (got {len(through)})"
+        raise refused("S261", message, "add vertices that it passes, in their order")
+    return through
+
+
+LEAST = 3
+"""Fewer vertices enclose nothing."""
+
+Vertices: TypeAlias = Annotated[
+    tuple[Spot, ...],
+    Strict(strict=False),
+    Field(min_length=1, json_schema_extra={"minItems": LEAST}),
+    AfterValidator(_closed),
+]
 Rounding: TypeAlias = Annotated[Number, Field(gt=0, le=1)]
 
 
@@ -24,7 +49,7 @@ class SketchedOrbit(StrictModel):
     name: Identifier | None = Field(
         default=None, description="What messages and claims call it.", examples=["lap"]
     )
-    through: Annotated[tuple[Spot, ...], Strict(strict=False), Field(min_length=3)] = Field(
+    through: Vertices = Field(
         description="Its vertices, in the order in which they are passed; the last leads back to "
         "the first. Expressions of controls and constants are quantities, plain numbers are in "
         "the units of `over`.",
@@ -45,6 +70,7 @@ class SketchedOrbit(StrictModel):
     attracts: bool = Field(
         default=True,
         description="Whether the neighborhood comes closer (true) or goes away (false).",
+        examples=[True],
     )
     strength: Quantity = Field(
         default=1.0,
@@ -67,23 +93,35 @@ class SketchedOrbit(StrictModel):
         examples=["0.4 m/s"],
     )
 
-    @model_validator(mode="after")
-    def _pace_is_clear(self) -> Self:
-        refuse(self._mistakes())
-        return self
+    @model_validator(mode="wrap")
+    @classmethod
+    def _pace_is_clear(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        found = tuple(_pace_mistakes(data)) if isinstance(data, dict) else ()
+        try:
+            orbit = handler(data)
+        except ValidationError as error:
+            raise together(error, found) from None
+        refuse(found)
+        return orbit
 
-    def _mistakes(self) -> Iterator[Mistake]:
-        given = [name for name in ("period", "times", "speed") if getattr(self, name) is not None]
-        if not given:
-            message = "an orbit without a pace"
-            yield Mistake("S261", message, "add 'period: 4 s', 'times:' or 'speed:'", on_key=True)
-        for name in given[1:]:
-            message = f"{quoted(given[0])} and {quoted(name)} both say how fast the orbit is"
-            yield Mistake("S261", message, "remove one of them", (name,), on_key=True)
-        if self.times is not None and len(self.times) != len(self.through):
-            message = f"{counted(len(self.times), 'time')} for {len(self.through)} edges"
-            help_ = "write one for each vertex: the time to the next one"
-            yield Mistake("S261", message, help_, ("times",))
+
+PACES = ("period", "times", "speed")
+
+
+def _pace_mistakes(data: Mapping[str, Any]) -> Iterator[Mistake]:
+    """What is wrong with the pace of an orbit, whatever else is."""
+    given = [name for name in PACES if data.get(name) is not None]
+    if not any(name in data for name in PACES):
+        message = "an orbit without a pace"
+        yield Mistake("S261", message, "add 'period: 4 s', 'times:' or 'speed:'", on_key=True)
+    for name in given[1:]:
+        message = f"{quoted(given[0])} and {quoted(name)} both say how fast the orbit is"
+        yield Mistake("S261", message, "remove one of them", (name,), on_key=True)
+    times, through = data.get("times"), data.get("through")
+    if isinstance(times, list) and isinstance(through, list) and len(times) != len(through):
+        message = f"{counted(len(times), 'time')} for {counted(len(through), 'edge')}"
+        help_ = "write one for each vertex: the time to the next one"
+        yield Mistake("S261", message, help_, ("times",))
 
 
 @final
@@ -222,12 +260,19 @@ class Sketch(StrictModel):
         examples=[[{"at": [1, 1], "go": [0.2, 0]}]],
     )
 
-    @model_validator(mode="after")
-    def _fits_together(self) -> Self:
-        refuse(self._mistakes())
-        return self
+    @model_validator(mode="wrap")
+    @classmethod
+    def _fits_together(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        found = tuple(_name_mistakes(data)) if isinstance(data, dict) else ()
+        try:
+            sketch = handler(data)
+        except ValidationError as error:
+            raise together(error, found) from None
+        refuse((*found, *sketch.mistakes()))
+        return sketch
 
-    def _mistakes(self) -> Iterator[Mistake]:
+    def mistakes(self) -> Iterator[Mistake]:
+        """What does not fit together."""
         if self.over[0] == self.over[1]:
             yield Mistake("S112", f"{quoted(self.over[0])} stands twice in 'over'", at=("over", 1))
         if not (self.orbits or self.points or self.separatrices):
@@ -235,7 +280,6 @@ class Sketch(StrictModel):
             help_ = f"add {listed(KINDS[:3])}; arrows alone are a field of their own: 'arrows:'"
             yield Mistake("S262", message, help_, on_key=True)
         yield from self._length_mistakes()
-        yield from self._name_mistakes()
 
     def _length_mistakes(self) -> Iterator[Mistake]:
         for at, spot in self.spots():
@@ -243,15 +287,6 @@ class Sketch(StrictModel):
                 message = f"{counted(len(spot), 'number')} for {len(self.over)} axes"
                 help_ = f"write one for each of: {', '.join(self.over)}"
                 yield Mistake("S262", message, help_, at)
-
-    def _name_mistakes(self) -> Iterator[Mistake]:
-        seen: set[str] = set()
-        for kind in KINDS[:3]:
-            for i, feature in enumerate(getattr(self, kind)):
-                if feature.name is not None and feature.name in seen:
-                    message = f"two features are named {quoted(feature.name)}"
-                    yield Mistake("S262", message, "rename one of them", (kind, i, "name"))
-                seen.add(feature.name)
 
     def spots(self) -> Iterator[tuple[tuple[str | int, ...], Spot]]:
         """Every place and vector of the sketch, with the path to it."""
@@ -268,3 +303,16 @@ class Sketch(StrictModel):
         for i, arrow in enumerate(self.arrows):
             yield ("arrows", i, "at"), arrow.at
             yield ("arrows", i, "go"), arrow.go
+
+
+def _name_mistakes(data: Mapping[str, Any]) -> Iterator[Mistake]:
+    """Names that stand twice, whatever else is wrong."""
+    seen: set[str] = set()
+    for kind in KINDS[:3]:
+        features = data.get(kind)
+        for i, feature in enumerate(features if isinstance(features, list) else ()):
+            name = feature.get("name") if isinstance(feature, dict) else None
+            if isinstance(name, str) and name in seen:
+                message = f"two features are named {quoted(name)}"
+                yield Mistake("S262", message, "rename one of them", (kind, i, "name"))
+            seen.update([name] if isinstance(name, str) else [])

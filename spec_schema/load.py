@@ -118,7 +118,9 @@ def examine_source(source: Source) -> Examined:
     rest = salvage(model, data)
     if rest is None:
         return Examined(mistakes, None, frozenset())
-    return Examined(mistakes, Loaded(source, rest.spec, places), rest.lost)
+    mistakes = first_ones((*mistakes, *(_diagnostic(places, found) for found in rest.hidden)))
+    left = replace(places, kept=rest.kept)
+    return Examined(mistakes, Loaded(source, rest.spec, left), rest.lost)
 
 
 def _sound(examined: Examined) -> Loaded:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, final
 
-from pydantic_core import PydanticCustomError
+from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError, ValidationError
 
 TYPE = "mistakes"
 """The pydantic error type that carries mistakes."""
@@ -29,13 +29,38 @@ def refuse(mistakes: Iterable[Mistake]) -> None:
     """Raise the mistakes, if there are any, so that pydantic adds their place."""
     found = tuple(mistakes)
     if found:
-        raise PydanticCustomError(TYPE, "this does not fit together", {"found": found})
+        raise _error(found)
+
+
+def together(error: ValidationError, mistakes: Iterable[Mistake]) -> ValidationError:
+    """What pydantic found inside a value, and the mistakes of the value as a whole.
+
+    Pydantic's own checks of the parts hide those of the whole: a validator in mode `wrap` catches
+    the error, looks at the raw value, and raises this.
+    """
+    lines = [_line(found) for found in error.errors(include_url=False)]
+    told = tuple(mistakes)
+    if told:
+        lines.append(InitErrorDetails(type=_error(told), loc=(), input=None))
+    return ValidationError.from_exception_data(error.title, lines)
+
+
+def _line(found: ErrorDetails) -> InitErrorDetails:
+    kind: str | PydanticCustomError = found["type"]
+    if kind == TYPE:
+        kind = _error(carried(found["ctx"]))
+    return InitErrorDetails(
+        type=kind, loc=found["loc"], input=found["input"], ctx=found.get("ctx", {})
+    )
+
+
+def _error(mistakes: tuple[Mistake, ...]) -> PydanticCustomError:
+    return PydanticCustomError(TYPE, "this does not fit together", {"found": mistakes})
 
 
 def refused(code: str, message: str, remedy: str = "") -> PydanticCustomError:
     """One mistake as the error to raise."""
-    found = (Mistake(code, message, remedy),)
-    return PydanticCustomError(TYPE, "this does not fit together", {"found": found})
+    return _error((Mistake(code, message, remedy),))
 
 
 def carried(context: dict[str, Any]) -> tuple[Mistake, ...]:

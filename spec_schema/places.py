@@ -1,7 +1,8 @@
 """From a path in the data (`("field", "formula", "x")`) to a place in the text."""
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping as AbstractMapping
+from dataclasses import dataclass, field
 from typing import TypeAlias, final
 
 from spec_schema.node import Entry, Listing, Mapping, Node, Scalar
@@ -23,16 +24,34 @@ def dotted(path: Path) -> str:
     return "$" + "".join(map(_step, path))
 
 
+def as_written(path: Path, kept: AbstractMapping[Path, tuple[int, ...]]) -> Path:
+    """The path in the text, of one in data where lists have lost items.
+
+    kept: for each such list, by its path in the text, the indices of the items that are left.
+
+    >>> as_written(("points", 1, "at", 0), {("points",): (0, 2)})
+    ('points', 2, 'at', 0)
+    """
+    found: Path = ()
+    for step in path:
+        left = kept.get(found)
+        known = left is not None and isinstance(step, int) and step < len(left)
+        found = (*found, left[int(step)] if left is not None and known else step)
+    return found
+
+
 @final
 @dataclass(frozen=True, slots=True)
 class Places:
     """The places of all keys and values of one document.
 
-    A path that goes further than what is written means the last thing that is written.
+    A path that goes further than what is written means the last thing that is written. Where lists
+    have lost items, `kept` leads from the paths of what is left to the text (see `as_written`).
     """
 
     source: Source
     root: Node
+    kept: AbstractMapping[Path, tuple[int, ...]] = field(default_factory=dict)
 
     def value(self, path: Path) -> Span:
         """Where the value stands; for an empty one, its key."""
@@ -45,7 +64,7 @@ class Places:
 
     def written(self, path: Path) -> Path:
         """The longest beginning of `path` that stands in the text."""
-        return path[: self._walk(path)[2]]
+        return as_written(path, self.kept)[: self._walk(path)[2]]
 
     def within(self, path: Path, start: int, end: int, *, key: bool = False) -> Span:
         """Where the characters `start` to `end` of a text, or of the last key of the path, stand.
@@ -66,7 +85,7 @@ class Places:
 
     def dotted(self, path: Path) -> str:
         """The path in the notation of the diagnostics."""
-        return dotted(path)
+        return dotted(as_written(path, self.kept))
 
     def origin(self, path: Path) -> str:
         """`file:line:column` of the key, else of the item."""
@@ -76,7 +95,7 @@ class Places:
     def _walk(self, path: Path) -> tuple[Entry | None, Node, int]:
         entry: Entry | None = None
         node = self.root
-        for depth, step in enumerate(path):
+        for depth, step in enumerate(as_written(path, self.kept)):
             match node:
                 case Mapping() if step in node.entries:
                     entry = node.entries[str(step)]

@@ -3,18 +3,20 @@
 A wrong number in one place must not hide a wrong dimension in another. So the parts that the
 models refuse are taken out, each with the smallest mapping that can do without it, and what is
 left is checked on; names that went with them are remembered, and nothing is said about those.
+Lists close up where an item went: `kept` leads back to the items as they were written.
 """
 
 import copy
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar, final
 
 from pydantic import BaseModel, ValidationError
 
 from spec_schema.explain import mistakes_of
+from spec_schema.mistake import Mistake
 from spec_schema.node import Plain
-from spec_schema.places import Path
+from spec_schema.places import Path, as_written
 
 _ROUNDS = 12
 _NAMED = frozenset({"state", "control", "constants", "output"})
@@ -26,39 +28,104 @@ Model = TypeVar("Model", bound=BaseModel)
 @final
 @dataclass(frozen=True, slots=True)
 class Salvaged(Generic[Model]):
-    """A valid model of what is left, and the declared names that were taken out."""
+    """A valid model of what is left, and the declared names that were taken out.
+
+    kept: for each list that lost items, by its path in the text, the indices of the others.
+    hidden: mistakes that came to light when others were taken out, at their places in the text.
+    """
 
     spec: Model
     lost: frozenset[str]
+    kept: Mapping[Path, tuple[int, ...]]
+    hidden: tuple[Mistake, ...]
 
 
 def salvage(model: type[Model], data: dict[str, Plain]) -> Salvaged[Model] | None:
     """The model of `data` without its faulty parts; None where nothing useful is left."""
-    rest = copy.deepcopy(data)
-    lost: set[str] = set()
+    rest = _Rest(copy.deepcopy(data))
+    hidden: list[Mistake] = []
     for _ in range(_ROUNDS):
         try:
-            return Salvaged(model.model_validate(rest), frozenset(lost))
+            spec = model.model_validate(rest.data)
         except ValidationError as error:
-            found = [m.at for e in error.errors(include_url=False) for m in mistakes_of(model, e)]
-            if any(path == () or (len(path) == 1 and path[0] in _NAMED) for path in found):
+            found = [m for e in error.errors(include_url=False) for m in mistakes_of(model, e)]
+            if not found or any(_is_vital(mistake.at) for mistake in found):
                 return None
-            lost.update(_taken_out(rest, found))
+            hidden += rest.news(found, data)
+            rest.take_out(mistake.at for mistake in found)
+        else:
+            return Salvaged(spec, frozenset(rest.lost), rest.kept, tuple(hidden))
     return None
 
 
-def _taken_out(data: dict[str, Plain], paths: Iterable[Path]) -> set[str]:
-    """Remove what stands at the paths, the last items of lists first; the names that went."""
-    gone: set[str] = set()
-    for path in sorted(set(paths), key=repr, reverse=True):
-        holder = _holder(data, path)
-        if isinstance(holder, dict) and path[-1] in holder:
-            del holder[str(path[-1])]
-            if path[0] in _NAMED and len(path) == 2:
-                gone.add(str(path[1]))
-        elif isinstance(holder, list) and isinstance(path[-1], int) and path[-1] < len(holder):
-            del holder[path[-1]]
-    return gone
+def _is_vital(path: Path) -> bool:
+    """Whether nothing useful is left without what stands there."""
+    return path == () or (len(path) == 1 and path[0] in _NAMED)
+
+
+@final
+class _Rest:
+    """A document that parts are taken out of, and where the others stood."""
+
+    def __init__(self, data: dict[str, Plain]) -> None:
+        self.data = data
+        self.lost: set[str] = set()
+        self.kept: dict[Path, tuple[int, ...]] = {}
+        self._gone: set[Path] = set()
+
+    def news(self, found: Iterable[Mistake], written: Plain) -> list[Mistake]:
+        """The mistakes, where they are written, that no part taken out so far can have caused."""
+        if not self._gone:
+            return []  # they are told already
+        placed = [
+            Mistake(m.code, m.message, m.help, as_written(m.at, self.kept), m.on_key) for m in found
+        ]
+        return [m for m in placed if all(_apart(m.at, path, written) for path in self._gone)]
+
+    def take_out(self, paths: Iterable[Path]) -> None:
+        """Remove what stands at the paths, the last items of lists first."""
+        for path in sorted(set(paths), key=_order, reverse=True):
+            holder, step = _holder(self.data, path), path[-1]
+            written = as_written(path, self.kept)
+            if isinstance(holder, dict) and step in holder:
+                del holder[str(step)]
+                if path[0] in _NAMED and len(path) == 2:
+                    self.lost.add(str(step))
+            elif isinstance(holder, list) and isinstance(step, int) and step < len(holder):
+                left = self.kept.get(written[:-1], tuple(range(len(holder))))
+                self.kept[written[:-1]] = (*left[:step], *left[step + 1 :])
+                del holder[step]
+            self._gone.add(written)
+
+
+def _order(path: Path) -> tuple[tuple[int, str], ...]:
+    return tuple((step, "") if isinstance(step, int) else (-1, step) for step in path)
+
+
+def _apart(path: Path, gone: Path, written: Plain) -> bool:
+    """Whether `path` is in a list item that is a mapping, and `gone` in another such item.
+
+    Or in another part of the document altogether: beside one another in one mapping, two parts may
+    well depend on one another.
+    """
+    depths = [k for k in range(2, len(path) + 1) if _is_item(path[:k], written)]
+    if not depths:
+        return False
+    depth = depths[-1]
+    item, around = path[:depth], path[: depth - 2]
+    if gone[:depth] == item:
+        return False
+    return gone[: depth - 2] != around or _is_item(gone[:depth], written)
+
+
+def _is_item(path: Path, written: Plain) -> bool:
+    """Whether a mapping stands there as an item of a list."""
+    if not path or not isinstance(path[-1], int):
+        return False
+    holder = _holder(written, path)
+    return (
+        isinstance(holder, list) and path[-1] < len(holder) and isinstance(holder[path[-1]], dict)
+    )
 
 
 def _holder(data: Plain, path: Path) -> Plain:

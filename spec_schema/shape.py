@@ -93,6 +93,8 @@ class _Repairs(Generic[Model]):
             if m.at not in empty
         ]
         found.extend(empty_value(self.model, path) for path in islice(empty, _ENOUGH))
+        if errors and not found and not self.mistakes:
+            found = [Mistake("S103", f"this does not fit: {errors[0]['msg']}", at=errors[0]["loc"])]
         return (*self.mistakes, *map(self._as_written, found))
 
     def _as_written(self, mistake: Mistake) -> Mistake:

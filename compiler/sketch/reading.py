@@ -168,7 +168,7 @@ def _orbit(orbit: SketchedOrbit, i: int, reader: Reader) -> Orbit:
     if orbit.speed is not None:
         speed = _speed(orbit.speed, (*path, "speed"), reader)
     return Orbit(
-        name=orbit.name or _numbered("orbit", i),
+        name=orbit.name or _numbered("orbit", path, reader),
         through=through,
         is_polygon=orbit.shape == "polygon",
         rounding=orbit.rounding,
@@ -212,7 +212,7 @@ def _point(point: SketchedPoint, i: int, reader: Reader) -> Point:
     if point.turns != 0.0:
         turns = _turning(point.turns, (*path, "turns"), reader)
     at = reader.pair(point.at, (*path, "at"))
-    name = point.name or _numbered(point.is_, i)
+    name = point.name or _numbered(point.is_, path, reader)
     return Point(name, point.is_, at, (rates[0], rates[1]), directions, turns, path)
 
 
@@ -228,7 +228,7 @@ def _line(line: SketchedSeparatrix, i: int, reader: Reader) -> Line:
         for k, rate in enumerate(line.rates)
     )
     return Line(
-        name=line.name or _numbered("separatrix", i),
+        name=line.name or _numbered("separatrix", path, reader),
         through=tuple(reader.pair(s, (*path, "through", k)) for k, s in enumerate(line.through)),
         saddle=None if line.saddle is None else reader.pair(line.saddle, (*path, "saddle")),
         rates=(first, second),
@@ -236,5 +236,6 @@ def _line(line: SketchedSeparatrix, i: int, reader: Reader) -> Line:
     )
 
 
-def _numbered(kind: str, i: int) -> str:
-    return f"{kind} {i + 1}"
+def _numbered(kind: str, path: Path, reader: Reader) -> str:
+    """A name for a feature without one: its number in the list as it is written."""
+    return f"{kind} {int(reader.findings.written(path)[-1]) + 1}"

@@ -1,6 +1,13 @@
 """A faulty part is taken out, and the rest is checked on."""
 
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from compiler.check import check_examined
+from spec_schema.diagnostics import SpecError
 from spec_schema.load import examine_source
+from spec_schema.places import as_written
 from spec_schema.source import Source
 
 GOOD = """specc: 1
@@ -48,3 +55,58 @@ def test_without_states_nothing_is_left() -> None:
 
     assert examined.loaded is None
     assert examined.mistakes
+
+
+SKETCH = (
+    GOOD.split("control:")[0]
+    + """  y: {unit: m, domain: [-1, 1], role: both, relates: {agent: a, environment: b}}
+field:
+  sketch:
+    over: [x, y]
+    points:
+"""
+)
+FAULTY = "      - {is: attractor, at: [0]}\n"
+SOUND = "      - {is: attractor, at: [0, 0]}\n"
+LATE = "      - {is: attractor, at: [0, 0], rates: -1}\n"
+
+
+@given(st.lists(st.sampled_from([FAULTY, SOUND]), max_size=14))
+def test_a_mistake_after_faulty_items_is_told_at_its_own_item(before: list[str]) -> None:
+    found = check_examined(examine_source(Source("s.yaml", SKETCH + "".join(before) + LATE)))
+
+    line = len((SKETCH + "".join(before)).splitlines()) + 1
+    late = next(d for d in found if d.code == "S212")
+    assert late.path == f"$.field.sketch.points[{len(before)}].rates"
+    assert late.span is not None
+    assert late.span.line == line
+
+
+def test_claims_after_a_faulty_one_are_told_at_their_own_places() -> None:
+    expect = "expect:\n  - {one attractor: 3}\n  - one atractor\n"
+    found = check_examined(examine_source(Source("s.yaml", GOOD + expect)))
+
+    places = [d.path for d in found if d.path.startswith("$.expect")]
+    assert places == ["$.expect[0]['one attractor']", "$.expect[1]['one atractor']"]
+
+
+def test_what_other_mistakes_hide_is_told_with_them_but_not_what_they_cause() -> None:
+    items = "      - {is: atractor, at: [0, [1]]}\n" + FAULTY
+    found = examine_source(Source("s.yaml", SKETCH + items)).mistakes
+
+    assert {d.path for d in found} == {
+        "$.field.sketch.points[0].is",
+        "$.field.sketch.points[0].at[1]",
+        "$.field.sketch.points[1].at",
+    }
+
+
+def test_items_taken_out_in_turn_lead_back_to_the_text() -> None:
+    kept = {("a",): (1, 3), ("a", 3, "b"): (2,)}
+
+    assert as_written(("a", 1, "b", 0, "c"), kept) == ("a", 3, "b", 2, "c")
+
+
+def test_nothing_is_refused_without_a_word() -> None:
+    with pytest.raises(AssertionError):
+        SpecError([])
