@@ -125,7 +125,9 @@ def _fixed_point(point: FixedPoint, portrait: Portrait) -> str:
     if portrait.completeness.about and not point.proved:
         remarks.append("not proved")
     told = f" ({', '.join(remarks)})" if remarks else ""
-    return f"{point.kind} at {place(portrait.axes, point.at.tolist(), 6)}; eigenvalues {values}{told}"
+    return (
+        f"{point.kind} at {place(portrait.axes, point.at.tolist(), 6)}; eigenvalues {values}{told}"
+    )
 
 
 def _cycle(cycle: Cycle, portrait: Portrait) -> str:

@@ -1,6 +1,8 @@
 """Areas of a portrait: basins as light tints, and boxes in which nothing could be decided."""
 
 import textwrap
+from collections.abc import Callable
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -33,6 +35,21 @@ CHIP: Final = 0.42
 CHIPS_ROOM: Final = 0.6
 """The part of a panel's width that shares may take; its name takes the rest."""
 
+PERIOD: Final = 6
+"""Of a hatching, in finer cells."""
+
+HATCHES: Final[MappingProxyType[str, Callable[[Integers, Integers], Booleans]]] = MappingProxyType(
+    {
+        "": lambda i, _: i < 0,
+        "...": lambda i, j: (i % PERIOD == 0) & (j % PERIOD == 0),
+        "///": lambda i, j: (i - j) % PERIOD == 0,
+        "---": lambda _, j: j % PERIOD == 0,
+        "xxx": lambda i, j: ((i + j) % PERIOD == 0) | ((i - j) % PERIOD == 0),
+        "|||": lambda i, _: i % PERIOD == 0,
+    }
+)
+"""Which finer cells a hatching darkens; the names are matplotlib's."""
+
 ALL: Final = 0.9995
 """Where one attractor has this share of the domain, a tint would tell nothing."""
 
@@ -46,31 +63,31 @@ def draw_basins(panel: Panel, portrait: Portrait) -> list[Entry]:
     if basins is None or (_is_of_one(basins) and not panel.is_small):
         return []
     x, y = panel.states
-    extent = (*_ends(x), *_ends(y))
     present = [int(k) for k in np.unique(basins.labels)]
     fine = _smoothed(basins.labels, present)
+    picture = np.array([_ground(panel, label) for label in present])[fine]
+    for k, label in enumerate(present):
+        if label >= 0 and panel.palette.hatches:
+            marks = (fine == k) & HATCHES[hatch(panel.palette, label)](*np.indices(fine.shape))
+            picture[marks] = to_rgba(panel.palette.slow)
     panel.axes.imshow(
-        np.array([_ground(panel, label) for label in present])[fine].swapaxes(0, 1),
+        picture.swapaxes(0, 1),
         origin="lower",
-        extent=extent,
+        extent=(*_ends(x), *_ends(y)),
         aspect="auto",
         interpolation="nearest",
         zorder=0,
     )
-    for k, label in enumerate(present):
-        if label >= 0 and hatch(panel.palette, label):
-            _hatch(panel, (fine == k).T, label, extent)
-    return basin_entries(panel, portrait)
+    return basin_entries(panel.palette, portrait, is_small=panel.is_small)
 
 
-def basin_entries(panel: Panel, portrait: Portrait) -> list[Entry]:
+def basin_entries(palette: Palette, portrait: Portrait, *, is_small: bool) -> list[Entry]:
     """What the legend says of the basins, with the share of each; panels say their own."""
     basins = portrait.basins
     if basins is None:
         return []
-    palette = panel.palette
     nothing = Patch(facecolor=palette.paper, edgecolor=palette.faint, linewidth=0.5)
-    if panel.is_small:
+    if is_small:
         some = [Entry("basin of attraction, and its share", (basin_patch(palette, 0),))]
         return some + ([Entry("leaves the domain", (nothing,))] if basins.leaves > 0.0 else [])
     entries = [
@@ -152,20 +169,6 @@ def basin_patch(palette: Palette, index: int) -> Patch:
 
 def _ends(state: AxisRange) -> tuple[float, float]:
     return state.low / state.unit.scale, state.high / state.unit.scale
-
-
-def _hatch(
-    panel: Panel, inside: Booleans, label: int, extent: tuple[float, float, float, float]
-) -> None:
-    """Hatches where (n2, n1) it is inside."""
-    panel.axes.contourf(
-        np.pad(inside.astype(np.float64), 1, mode="edge"),
-        levels=[0.5, 1.5],
-        colors="none",
-        hatches=[hatch(panel.palette, label)],
-        extent=extent,
-        zorder=0.5,
-    )
 
 
 def _smoothed(labels: Integers, present: list[int]) -> Integers:

@@ -12,6 +12,7 @@ from runtime.arrays import Array
 from specc.comparison_text import verdict_text
 from specc.figures.axes_of_states import name_x, name_y, same_scale, shown, split_at_seams
 from specc.figures.legend import Entry, draw_legend, line_entry
+from specc.figures.markers import SHAPES
 from specc.figures.palettes import PALETTES, Palette
 from specc.figures.paper import (
     BELOW,
@@ -28,6 +29,7 @@ from specc.figures.style import look
 from specc.figures.style_names import Style
 from verifier.topology.comparing.comparison import Comparison
 from verifier.topology.comparing.matching import Fate
+from verifier.topology.features import PointKind
 
 MOST: Final = (4.7, 4.3)
 """The size of the panel in inches, at most."""
@@ -96,23 +98,35 @@ def _features(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entr
     for feature in comparison.features:
         found, wanted = feature.points
         color = palette.ink if feature.fate is Fate.SAME else palette.alarm
-        _path(axes, comparison, wanted, color=color, linestyle="--", markerfacecolor=palette.paper)
-        _path(axes, comparison, found, color=color, linestyle="-", markerfacecolor=color)
+        sides = (
+            (wanted, feature.wanted, "--", palette.paper),
+            (found, feature.found, "-", color),
+        )
+        for points, kind, dashes, ground in sides:
+            style = {"color": color, "linestyle": dashes, "markerfacecolor": ground}
+            _path(axes, comparison, points, **style, marker=_shape(kind))
         label = f"{feature.wanted or feature.found}: {feature.fate}"
         if max(len(found), len(wanted)) > 1:
             entries.append(line_entry(label, color=color))
         else:
-            entries.append(line_entry(label, color=color, marker="o", linestyle="none"))
+            shape = _shape(feature.wanted or feature.found)
+            entries.append(line_entry(label, color=color, marker=shape, linestyle="none"))
     hint = line_entry("dashed or open: wanted", color=palette.ink, linestyle="--")
     return [*entries, hint] if entries else []
+
+
+def _shape(kind: str) -> str:
+    """The marker of a kind of fixed point: as in portraits, circles, squares and diamonds."""
+    return SHAPES[PointKind(kind)][0] if kind in list(PointKind) else "o"
 
 
 def _path(axes: Axes, comparison: Comparison, points: Array, **style: Any) -> None:
     if len(points) == 1:
         at = shown(comparison.axes, points[0])
-        axes.plot(*at, "o", **{**style, "linestyle": "none"}, clip_on=False, zorder=10)
+        axes.plot(*at, **{**style, "linestyle": "none"}, clip_on=False, zorder=10)
     for piece in split_at_seams(comparison.axes, points) if len(points) > 1 else ():
-        axes.plot(*shown(comparison.axes, piece).T, **style, linewidth=1.6, zorder=9)
+        line = {**style, "marker": "none"}
+        axes.plot(*shown(comparison.axes, piece).T, **line, linewidth=1.6, zorder=9)
 
 
 def _curve(axes: Axes, comparison: Comparison, palette: Palette) -> list[Entry]:

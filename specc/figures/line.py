@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from runtime.program import Unit
-from specc.figures.areas import ALL, basin_labels, basin_patch, hatch, tint
+from specc.figures.areas import ALL, basin_entries, hatch, tint
 from specc.figures.axes_of_states import name_x, name_y
 from specc.figures.curves import CYCLE_DASHES, CYCLE_WIDTH, LEAP_DASHES
 from specc.figures.legend import Entry, Look, line_entry
@@ -22,13 +22,18 @@ from verifier.topology.features import Cycle, Portrait, Standing
 DIAGONAL: Final = (0.0, (4.0, 2.0))
 
 
-def draw_line(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
-    """Draws into `axes`; gives what the legend shows."""
-    draw = _cobweb if portrait.every > 0.0 else _phase_line
-    return [*draw(axes, portrait, palette), *_undecided(axes, portrait, palette)]
+def draw_line(
+    axes: Axes, portrait: Portrait, palette: Palette, *, is_small: bool = False
+) -> list[Entry]:
+    """Draws into `axes`, which may be one of many; gives what the legend shows."""
+    if portrait.every > 0.0:
+        drawn = _cobweb(axes, portrait, palette)
+    else:
+        drawn = _phase_line(axes, portrait, palette, is_small=is_small)
+    return [*drawn, *_undecided(axes, portrait, palette)]
 
 
-def _phase_line(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
+def _phase_line(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: bool) -> list[Entry]:
     """The rate over the state; arrows on the line of rest say which way it goes."""
     (state,) = portrait.axes
     scale = state.unit.scale
@@ -39,7 +44,7 @@ def _phase_line(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]
     axes.set_ylabel(axis_label(rate_of(state.name), _per_second(state.unit)))
     axes.axhline(0.0, color=palette.ink, linewidth=0.8, zorder=2)
     axes.plot(nodes, rates, color=color, linewidth=1.8, zorder=3)
-    basins = _basins(axes, portrait, palette)
+    basins = _basins(axes, portrait, palette, is_small=is_small)
     if not basins:
         axes.fill_between(nodes, 0.0, rates, color=color, alpha=0.08, linewidth=0.0, zorder=1)
     _directions(axes, nodes, rates, palette)
@@ -158,7 +163,7 @@ def _on_paper(values: Array, *, on_diagonal: bool) -> Array:
     return np.stack([values, values if on_diagonal else np.zeros_like(values)], axis=-1)
 
 
-def _basins(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
+def _basins(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: bool) -> list[Entry]:
     """Tinted stretches of the state, one tint an attractor; a cycle's even if it has it all."""
     basins = portrait.basins
     if basins is None or not basins.attractors:
@@ -180,9 +185,7 @@ def _basins(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
                 linewidth=0.0,
                 zorder=0,
             )
-    return [
-        Entry(label, (basin_patch(palette, k),)) for k, label in enumerate(basin_labels(portrait))
-    ]
+    return basin_entries(palette, portrait, is_small=is_small)
 
 
 def _undecided(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:

@@ -96,7 +96,7 @@ def _arrangement(portrait: Portrait, count: int) -> tuple[int, tuple[float, floa
 
 def _draw(panel: Panel, portrait: Portrait) -> list[Entry]:
     if len(portrait.axes) == 1:
-        return draw_line(panel.axes, portrait, panel.palette)
+        return draw_line(panel.axes, portrait, panel.palette, is_small=True)
     return draw_plane(panel, portrait)
 
 

@@ -91,8 +91,8 @@ JOURNAL: Final = Palette(
     ink="#000000",
     faint="#3c3c3c",
     paper="#ffffff",
-    slow="#d2d2d2",
-    fast="#8c8c8c",
+    slow="#c6c6c6",
+    fast="#808080",
     faster="darker",
     nullcline="#5a5a5a",
     cycle="#000000",
@@ -102,7 +102,7 @@ JOURNAL: Final = Palette(
     switch="#000000",
     alarm="#000000",
     tints=("#e6e6e6", "#f7f7f7", "#dadada", "#f0f0f0", "#d0d0d0", "#ffffff"),
-    hatches=("", "...", "\\\\\\", "---", "xxx", "ooo"),
+    hatches=("", "...", "///", "---", "xxx", "|||"),
     settings=SERIF,
 )
 

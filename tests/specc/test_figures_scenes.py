@@ -66,7 +66,7 @@ def test_the_legend_names_everything_once_and_the_most_important_first() -> None
         "flow, darker is faster",
         "undecided: may hold fixed points",
         "goes to (−1, 0): 42.5 %",
-        "goes to the cycle of 3 s: 42.5 %",
+        "goes to the cycle of period 3 s: 42.5 %",
         "leaves the domain: 10.0 %",
     ]
 
@@ -220,7 +220,12 @@ def test_json_carries_proofs_cycles_separatrices_and_basins_in_own_units() -> No
     assert (first["period"], first["stable"], first["multipliers"]) == (3.0, True, [[0.5, 0.0]])
     assert max(p[0] for p in first["points"]) == pytest.approx(1.2)
     assert [s["to"] for s in record["separatrices"]] == [None, 0, 0]
-    assert record["basins"]["attractors"][1] == {"of": "cycles", "index": 0, "share": 0.425}
+    assert record["basins"]["attractors"][1] == {
+        "of": "cycles",
+        "index": 0,
+        "name": "cycle of period 3 s",
+        "share": 0.425,
+    }
     assert record["switching"][0]["to"] == "back"
 
 

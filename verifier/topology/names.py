@@ -54,16 +54,16 @@ def place(axes: Sequence[AxisRange], at: Sequence[float], digits: int = DIGITS) 
 
 
 def cycle_names(portrait: Portrait) -> tuple[str, ...]:
-    """Of each cycle: by its period; those of one period also by their middle, or their reach."""
+    """Of each cycle: by its period; like ones also by their middle, or their reach."""
     if portrait.every > 0.0:
         names = [f"orbit of period {len(c.points) - 1}" for c in portrait.cycles]
     else:
         names = [f"cycle of period {c.period:.{DIGITS}g} s" for c in portrait.cycles]
     ways: tuple[Callable[[Portrait, Cycle], str], ...] = (_middle, _reach)
     for way in ways:
-        count = Counter(names)
+        count = Counter(zip(names, (c.stability for c in portrait.cycles), strict=True))
         names = [
-            f"{name} {way(portrait, cycle)}" if count[name] > 1 else name
+            f"{name} {way(portrait, cycle)}" if count[name, cycle.stability] > 1 else name
             for name, cycle in zip(names, portrait.cycles, strict=True)
         ]
     return tuple(names)

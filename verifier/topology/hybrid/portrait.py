@@ -178,7 +178,7 @@ def _lines(hybrid: Hybrid, grid: Grid) -> Iterator[Switching]:
         yield Switching(hybrid.modes[guard.mode], hybrid.modes[guard.target], lines)
 
 
-def _zeros(grid: Grid, values: Array) -> list[Array]:
+def _zeros(grid: Grid, values: Array) -> tuple[Array, ...]:
     """Where values on the grid are zero: lines (k, 2), on one axis single points (1, 1)."""
     if len(grid.nodes) == 2:
         return zero_lines(grid.nodes, values)
@@ -186,7 +186,7 @@ def _zeros(grid: Grid, values: Array) -> list[Array]:
     left = np.flatnonzero((values[:-1] >= 0.0) != (values[1:] >= 0.0))
     share = values[left] / (values[left] - values[left + 1])
     at = nodes[left] + share * (nodes[left + 1] - nodes[left])
-    return [place.reshape(1, 1) for place in at]
+    return tuple(place.reshape(1, 1) for place in at)
 
 
 def _paths(hybrid: Hybrid, count: int) -> Iterator[Trajectory]:
