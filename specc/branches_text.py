@@ -17,6 +17,7 @@ def branches_summary(branches: Branches) -> str:
     rows += [f"  {bifurcation_sentence(found, unit)}" for found in branches.bifurcations]
     if not branches.bifurcations:
         rows.append("  no bifurcation seen")
+    rows += [f"  {bifurcation_sentence(found, unit)}" for found in branches.retypings]
     rows += [f"  {_branch('fixed point', b.values, b.kinds, unit)}" for b in branches.points]
     rows += [f"  {_branch('cycle', b.values, b.stabilities, unit)}" for b in branches.cycles]
     rows += [f"  {note}" for note in branches.notes]
@@ -67,19 +68,21 @@ def branches_record(branches: Branches) -> dict[str, object]:
             }
             for branch in branches.cycles
         ],
-        "bifurcations": [
-            {
-                "change": str(found.change),
-                "value": found.value / scale,
-                "within": found.within / scale,
-                "at": {
-                    a.name: float(v) / a.unit.scale for a, v in zip(axes, found.at, strict=False)
-                },
-                "about": found.about,
-            }
-            for found in branches.bifurcations
-        ],
+        "bifurcations": [_change(branches, found) for found in branches.bifurcations],
+        "changes_of_type": [_change(branches, found) for found in branches.retypings],
         "notes": list(branches.notes),
+    }
+
+
+def _change(branches: Branches, found: Bifurcation) -> dict[str, object]:
+    scale = branches.unit.scale
+    at = zip(branches.axes, found.at, strict=False)
+    return {
+        "change": str(found.change),
+        "value": found.value / scale,
+        "within": found.within / scale,
+        "at": {axis.name: float(v) / axis.unit.scale for axis, v in at},
+        "about": found.about,
     }
 
 

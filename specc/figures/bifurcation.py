@@ -73,6 +73,7 @@ MARKS: Final[dict[Change, str]] = {
     Change.CYCLE_ENDS: "v",
     Change.LEAVES: "|",
     Change.OTHER: "d",
+    Change.TYPE: ".",
 }
 
 
@@ -83,7 +84,8 @@ def draw_bifurcations(branches: Branches, style: Style = Style.SCREEN) -> Figure
     tall = HEIGHT[min(count, 3)]
     height = count * tall + (count - 1) * GAP
     above = [line for line in (branches.about, held_text(branches.held)) if line]
-    changes = [bifurcation_sentence(b, branches.unit) for b in branches.bifurcations]
+    seen = (*branches.bifurcations, *branches.retypings)
+    changes = [bifurcation_sentence(b, branches.unit) for b in seen]
     text = heading(branches.name, above, [*changes, *branches.notes], WIDTH + LEGEND)
     below = BELOW + LINE * len(text.below)
     with look(palette):
@@ -153,7 +155,7 @@ def _changes(axes: Axes, branches: Branches, j: int, palette: Palette) -> list[E
     """A mark where something changes, on a thin line through the panel."""
     scale = branches.axes[j].unit.scale
     entries = []
-    for found in branches.bifurcations:
+    for found in (*branches.bifurcations, *branches.retypings):
         x = found.value / branches.unit.scale
         axes.axvline(x, color=palette.faint, linewidth=0.6, linestyle=DOTS, zorder=1)
         style: Look = {

@@ -37,6 +37,7 @@ from verifier.topology.branches.continuation import (
     Change,
 )
 from verifier.topology.branches.lines import cycle_branches, point_branches
+from verifier.topology.branches.retyping import retypings
 from verifier.topology.branches.tangents import tangents
 from verifier.topology.features import Portrait
 from verifier.topology.scenes import Scenes
@@ -101,6 +102,8 @@ def find_branches(
     places = sorted({*values, *(v for one in found for v in one.sides)})
     portraits = [line.everything(value) for value in places]
     first = portraits[0]
+    joined = point_branches(places, portraits, line.steps)
+    changes = tuple(one.bifurcation for one in found)
     return Branches(
         name=program.name,
         about=program.about,
@@ -111,10 +114,11 @@ def find_branches(
         axes=first.axes,
         held=tuple(one for one in first.held if one.name != control),
         values=frozen(values),
-        points=point_branches(places, portraits, line.steps),
+        points=joined,
         cycles=cycle_branches(places, portraits),
-        bifurcations=tuple(one.bifurcation for one in found),
+        bifurcations=changes,
         notes=tuple(dict.fromkeys(note for seen in portraits for note in seen.notes)),
+        retypings=retypings(joined, changes, line.points),
     )
 
 

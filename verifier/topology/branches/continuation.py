@@ -25,6 +25,7 @@ class Change(StrEnum):
     CYCLE_ENDS = "end of a cycle"
     LEAVES = "crossing of the domain's edge"
     OTHER = "change"
+    TYPE = "change of type"
 
 
 @final
@@ -70,7 +71,8 @@ class Branches:
     """The bifurcation diagram of a behavior against one control, everything else held.
 
     control, unit, low, high: the abscissa. values: (S,) where portraits were made; branches have
-    further samples where something changes. notes: what the numbers do not show.
+    further samples where something changes. retypings: no bifurcations, but a focus becomes a node
+    or the other way round. notes: what the numbers do not show.
     """
 
     name: str
@@ -86,3 +88,4 @@ class Branches:
     cycles: tuple[CycleBranch, ...]
     bifurcations: tuple[Bifurcation, ...]
     notes: tuple[str, ...]
+    retypings: tuple[Bifurcation, ...] = ()
