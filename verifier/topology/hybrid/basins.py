@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Final, final
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.integrators import ENDINGS
@@ -23,23 +22,33 @@ TOLERANCE: Final = 1e-6
 AGAIN: Final = 0.37
 """How much later, in tempos, a lane must still be there: it may only have passed."""
 NEAR: Final = 0.02
+AT_ONCE: Final = 512
+"""Lanes whose distances are taken at once."""
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Goal:
-    """An attractor, as points (k, 1 + m): the mode, and shares of the widths."""
+    """An attractor, as `points` (k, 1 + m): the mode, and shares of the widths.
+
+    periodic: (1 + m,) which of these go round.
+    """
 
     is_cycle: bool
     index: int
-    tree: cKDTree
+    points: Array
+    periodic: Booleans
 
     def holds(self, places: Array) -> Booleans:
         """Which of `places` (L, 1 + m) are near; modes are far apart."""
-        known = np.all(np.isfinite(places), axis=-1)
-        gaps = np.full(len(places), np.inf)
-        gaps[known] = self.tree.query(places[known], distance_upper_bound=2.0 * NEAR)[0]
-        return np.asarray(gaps < NEAR)
+        near = np.zeros(len(places), dtype=np.bool_)
+        for begin in range(0, len(places), AT_ONCE):
+            part = slice(begin, begin + AT_ONCE)
+            gaps = places[part, None] - self.points
+            gaps -= np.where(self.periodic, np.round(gaps), 0.0)
+            # What is unknown is not near.
+            near[part] = (np.sum(gaps * gaps, axis=-1) < NEAR**2).any(axis=-1)
+        return near
 
 
 def find_hybrid_basins(
@@ -78,21 +87,21 @@ def _goals(
 ) -> tuple[Goal, ...]:
     view = hybrid.view
     points = [
-        Goal(is_cycle=False, index=i, tree=_tree(hybrid, point.at[None], np.array([mode])))
+        _goal(hybrid, i, point.at[None], np.array([mode]), is_cycle=False)
         for i, (point, mode) in enumerate(fixed_points)
         if point.kind in STABLE
     ]
     closed = [
-        Goal(is_cycle=True, index=i, tree=_tree(hybrid, cycle.points, np.array(cycle.modes)))
+        _goal(hybrid, i, cycle.points, np.array(cycle.modes), is_cycle=True)
         for i, cycle in enumerate(cycles)
         if cycle.is_attracting and cycle.points.shape[-1] == len(view.axes)
     ]
     return (*points, *closed)
 
 
-def _tree(hybrid: Hybrid, points: Array, modes: Array) -> cKDTree:
-    sizes = np.array([0.0, *(1.0 if periodic else 0.0 for periodic in hybrid.view.periodic)])
-    return cKDTree(_places(hybrid, points, modes), boxsize=sizes)
+def _goal(hybrid: Hybrid, index: int, points: Array, modes: Array, *, is_cycle: bool) -> Goal:
+    periodic = np.array([False, *hybrid.view.periodic])
+    return Goal(is_cycle, index, _places(hybrid, points, modes), periodic)
 
 
 def _places(hybrid: Hybrid, points: Array, modes: Array) -> Array:
