@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import final
+from typing import Final, final
 
 from compiler.check_ways import check_ways
 from compiler.claims import lower_claims
@@ -44,6 +44,10 @@ class Checked:
     settings: Settings
     findings: Findings
     design: Design | None = None
+
+
+COUNTING: Final = frozenset({"S267"})
+"""What is told of all features of a sketch together."""
 
 
 def check(path: Path | str) -> tuple[Diagnostic, ...]:
@@ -100,5 +104,7 @@ def designed(drawing: Drawing, declared: Declarations, findings: Findings) -> De
     try:
         return compose(drawing, declared)
     except SketchRefusedError as error:
+        if error.code in COUNTING and findings.lacks_items(("field", "sketch")):
+            return None  # what was refused may be what is missing
         findings.error(error.code, error.path, error.message, error.remedy)
         return None

@@ -44,6 +44,10 @@ class Findings:
         """The path in the text, where lists may have items that were refused."""
         return self._loaded.places.written(path)
 
+    def lacks_items(self, path: Path) -> bool:
+        """Whether a list under `path` has lost items that were refused."""
+        return any(known[: len(path)] == path for known in self._loaded.places.kept)
+
     def error(self, code: str, path: Path, message: str, remedy: str, *, key: bool = False) -> None:
         """Add an error at the value of `path`, or at its key."""
         self._found.append(self._loaded.error(code, path, message, remedy, key=key))

@@ -107,7 +107,9 @@ def _match_modes(form: Modes, modes: tuple[str, ...], findings: Findings) -> Non
             message = f"'{form.of}' has no value '{name}', so it can't be a mode"
             remedy = did_you_mean(name, list(modes)) or f"its values: {', '.join(modes)}"
             findings.error("S253", (*BASE, "each", name), message, remedy, key=True)
-    missing = [name for name in modes if name not in form.each]
+    each: Path = (*BASE, "each")
+    told = {name for name in modes if findings.written((*each, name)) == (*each, name)}
+    missing = [name for name in modes if name not in form.each and name not in told]
     if missing:
         message = f"the mode '{missing[0]}' has no field"
         remedy = f"add `{missing[0]}: {{formula: {{...}}}}`"

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self, final
 from pydantic import ConfigDict, Field, RootModel, model_validator
 
 from spec_schema.mistake import Mistake, refuse
-from spec_schema.value_types import Domain, Name, Quantity, StrictModel, Text
+from spec_schema.value_types import Domain, Identifier, Name, Quantity, StrictModel, Text
 from spec_schema.wording import described
 
 ALL = ""
@@ -91,7 +91,7 @@ class ClaimOptions(StrictModel):
         description="Controls at other values than their defaults, and states that are held.",
         examples=[{"mu": 1}],
     )
-    called: Name | None = Field(
+    called: Identifier | None = Field(
         default=None,
         description="A name for what is counted, for the claims below.",
         examples=["home"],

@@ -116,9 +116,9 @@ def examine_source(source: Source) -> Examined:
         return Examined((), Loaded(source, shape.spec, places), frozenset())
     mistakes = first_ones(_diagnostic(places, mistake) for mistake in shape.mistakes)
     rest = salvage(model, data)
-    if rest is None:
-        return Examined(mistakes, None, frozenset())
     mistakes = first_ones((*mistakes, *(_diagnostic(places, found) for found in rest.hidden)))
+    if rest.spec is None:
+        return Examined(mistakes, None, frozenset())
     left = replace(places, kept=rest.kept)
     return Examined(mistakes, Loaded(source, rest.spec, left), rest.lost)
 

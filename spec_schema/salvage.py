@@ -30,18 +30,19 @@ Model = TypeVar("Model", bound=BaseModel)
 class Salvaged(Generic[Model]):
     """A valid model of what is left, and the declared names that were taken out.
 
+    spec: None where nothing useful is left.
     kept: for each list that lost items, by its path in the text, the indices of the others.
     hidden: mistakes that came to light when others were taken out, at their places in the text.
     """
 
-    spec: Model
+    spec: Model | None
     lost: frozenset[str]
     kept: Mapping[Path, tuple[int, ...]]
     hidden: tuple[Mistake, ...]
 
 
-def salvage(model: type[Model], data: dict[str, Plain]) -> Salvaged[Model] | None:
-    """The model of `data` without its faulty parts; None where nothing useful is left."""
+def salvage(model: type[Model], data: dict[str, Plain]) -> Salvaged[Model]:
+    """The model of `data` without its faulty parts."""
     rest = _Rest(copy.deepcopy(data))
     hidden: list[Mistake] = []
     for _ in range(_ROUNDS):
@@ -50,12 +51,12 @@ def salvage(model: type[Model], data: dict[str, Plain]) -> Salvaged[Model] | Non
         except ValidationError as error:
             found = [m for e in error.errors(include_url=False) for m in mistakes_of(model, e)]
             if not found or any(_is_vital(mistake.at) for mistake in found):
-                return None
+                break
             hidden += rest.news(found, data)
             rest.take_out(mistake.at for mistake in found)
         else:
             return Salvaged(spec, frozenset(rest.lost), rest.kept, tuple(hidden))
-    return None
+    return Salvaged(None, frozenset(rest.lost), rest.kept, tuple(hidden))
 
 
 def _is_vital(path: Path) -> bool:

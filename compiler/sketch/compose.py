@@ -9,7 +9,7 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.sketch.algebra import with_constants
 from compiler.sketch.design import Design, Family, Node, Region, Ridge, Ring
-from compiler.sketch.drawing import Drawing, Line, Orbit, Point
+from compiler.sketch.drawing import Drawing, Orbit, Point
 from compiler.sketch.frame import Frame, SketchRefusedError, frame_of
 from compiler.sketch.index import SWAPPED, Border, Item, Sort, completed, index_of
 from compiler.sketch.polygons import (
@@ -20,6 +20,7 @@ from compiler.sketch.polygons import (
     sees_all,
     viewpoint,
 )
+from compiler.sketch.separatrices import ridge_of
 from runtime.arrays import Array
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.tree import Expr
@@ -51,7 +52,7 @@ def compose(drawing: Drawing, declared: Declarations) -> Design:
     _refuse_outside(drawing, frame, declared)
     loops = _loops(drawing, frame)
     nodes = [Node(point, frame.spot(point.at)) for point in drawing.points]
-    ridges = [_ridge(line, frame) for line in drawing.lines]
+    ridges = [ridge_of(line, frame) for line in drawing.lines]
     _refuse_coincidences(nodes, ridges, loops, frame)
     builder = _Builder(frame, tuple(loops), tuple(nodes), tuple(ridges))
     return Design(drawing, frame, builder.region(-1, None), drawing.arrows)
@@ -227,30 +228,6 @@ def _still(orbit: Orbit, frame: Frame) -> Array:
             )
             raise SketchRefusedError("S265", (*orbit.path, "through", i), message, remedy)
     return np.stack([spot.at for spot in spots])
-
-
-def _ridge(line: Line, frame: Frame) -> Ridge:
-    spots = [frame.spot(pair) for pair in line.through]
-    through = np.stack([spot.at for spot in spots])
-    if any(spot.controls for spot in spots):
-        message = f"the shape of '{line.name}' changes with the controls"
-        remedy = "place its points at fixed shares between the outermost places of the sketch"
-        raise SketchRefusedError("S265", line.path, message, remedy)
-    if not np.all(np.diff(through @ (through[-1] - through[0])) > 0.0):
-        message = f"'{line.name}' turns back on its way from its first point to its last"
-        remedy = "let its points advance from one end to the other"
-        raise SketchRefusedError("S265", line.path, message, remedy)
-    saddle = (through[0] + through[-1]) / 2 if line.saddle is None else frame.spot(line.saddle).at
-    return Ridge(line, through, _on_polyline(through, saddle))
-
-
-def _on_polyline(through: Array, saddle: Array) -> Array:
-    """The place of the polyline that is right beside the saddle: near that on the curve."""
-    chord = (through[-1] - through[0]) / np.linalg.norm(through[-1] - through[0])
-    s = (through - through[0]) @ chord
-    at = float((saddle - through[0]) @ chord)
-    found = [np.interp(at, s, through[:, axis]) for axis in (0, 1)]
-    return np.array(found)
 
 
 def _refuse_coincidences(

@@ -21,6 +21,7 @@ from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.expressions.tree import Expr, Number
 from spec_schema.places import Path
+from spec_schema.units import Unit
 
 BEND: Final = 4.0
 """So many half widths of the frame away, u begins to draw the plane together."""
@@ -61,7 +62,8 @@ class Frame:
     """middle, half: expressions of controls; moving: whether a control is in them.
 
     reach: (2, 2) lowest and highest q of each axis over the domains. box: what the controls may
-    be; constants: numbers for their names; samples: settings of the controls, the defaults first.
+    be; units: those that the user writes on each axis; constants: numbers for their names;
+    samples: settings of the controls, the defaults first.
     """
 
     over: tuple[str, str]
@@ -72,6 +74,7 @@ class Frame:
     box: Mapping[str, tuple[float, float]]
     constants: Mapping[str, Expr]
     samples: tuple[Mapping[str, float], ...]
+    units: tuple[Unit, Unit]
 
     @property
     def bends(self) -> bool:
@@ -119,6 +122,15 @@ class Frame:
         ]
 
 
+def spelled(place: Pair, frame: Frame) -> tuple[str, str]:
+    """A place in the user's units, at the controls' defaults."""
+    first, second = (
+        f"{evaluate(with_constants(e, frame.constants), frame.samples[0]) / unit.scale:.3g}"
+        for e, unit in zip(place, frame.units, strict=True)
+    )
+    return first, second
+
+
 def frame_of(drawing: Drawing, declared: Declarations) -> Frame:
     """The frame around everything that a sketch is drawn through.
 
@@ -139,8 +151,12 @@ def frame_of(drawing: Drawing, declared: Declarations) -> Frame:
         _reach(declared, name, m, h, box)
         for name, m, h in zip(drawing.over, middle, half, strict=True)
     ]
+    first, second = (declared.units[name] for name in drawing.over)
+    units = (first, second)
     moving = any(names_in(expr) for expr in (*middle, *half))
-    return Frame(drawing.over, middle, half, np.array(reach), moving, box, constants, samples)
+    return Frame(
+        drawing.over, middle, half, np.array(reach), moving, box, constants, samples, units
+    )
 
 
 def _samples(declared: Declarations) -> tuple[Mapping[str, float], ...]:

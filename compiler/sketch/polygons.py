@@ -35,6 +35,14 @@ def distance_to(vertices: Array, point: Array) -> float:
     return float(np.min(np.linalg.norm(nearest - point, axis=-1)))
 
 
+def distance_to_line(points: Array, point: Array) -> float:
+    """How far a point is from the open polyline through points (V, 2)."""
+    edges = np.diff(points, axis=0)
+    along = np.sum((point - points[:-1]) * edges, axis=-1) / np.sum(edges * edges, axis=-1)
+    nearest = points[:-1] + np.clip(along, 0.0, 1.0)[:, np.newaxis] * edges
+    return float(np.min(np.linalg.norm(nearest - point, axis=-1)))
+
+
 def crosses_itself(vertices: Array) -> bool:
     """Whether two edges that are no neighbors meet."""
     count = len(vertices)

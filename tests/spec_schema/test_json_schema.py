@@ -22,6 +22,7 @@ TYPES: dict[str, type | tuple[type, ...]] = {
     "string": str,
     "number": (int, float),
     "integer": int,
+    "boolean": bool,
 }
 
 
@@ -35,7 +36,8 @@ def faults(schema: dict[str, Any], value: Any, root: dict[str, Any]) -> Iterator
         yield "words"
     kinds = schema.get("type", [])
     kinds = [kinds] if isinstance(kinds, str) else kinds
-    if kinds and (isinstance(value, bool) or not any(isinstance(value, TYPES[k]) for k in kinds)):
+    fits = [k for k in kinds if isinstance(value, TYPES[k])]
+    if kinds and not ("boolean" in fits if isinstance(value, bool) else fits):
         yield "type"
     match value:
         case str():

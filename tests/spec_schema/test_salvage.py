@@ -58,7 +58,7 @@ def test_without_states_nothing_is_left() -> None:
 
 
 SKETCH = (
-    GOOD.split("control:")[0]
+    GOOD.split("control:", maxsplit=1)[0]
     + """  y: {unit: m, domain: [-1, 1], role: both, relates: {agent: a, environment: b}}
 field:
   sketch:
