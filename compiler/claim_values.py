@@ -18,7 +18,7 @@ from spec_schema.expressions.rewrite import names_in
 from spec_schema.expressions.tree import Expr, Number
 from spec_schema.faults import ExpressionError, UnitFault
 from spec_schema.places import Path
-from spec_schema.suggest import did_you_mean
+from spec_schema.suggest import did_you_mean, there_are
 from spec_schema.units import Unit, quantity_in
 
 PLACE_WITHIN: Final = 0.01
@@ -184,7 +184,7 @@ class ClaimReader:
 
     def _unknown(self, name: str, path: Path, known: list[str], what: str) -> None:
         remedy = did_you_mean(name, known) or (
-            f"there are {', '.join(known)}" if known else f"this behavior has no {what}"
+            there_are(known) if known else f"this behavior has no {what}"
         )
         if what == "control" and name in self._states:
             remedy = f"'{name}' is a state: a claim ranges over controls"
@@ -263,7 +263,7 @@ class ClaimReader:
         known = [*options.at, *options.reaches, *([PERIOD] if options.period is not None else [])]
         for name in options.within.root if options.within else ():
             if name != ALL and name not in known and known:
-                remedy = did_you_mean(name, known) or f"there are {', '.join(known)}"
+                remedy = did_you_mean(name, known) or there_are(known)
                 message = f"this claim gives no value for '{name}'"
                 path: Path = (*self._path, "within", name)
                 self._findings.error("S277", path, message, remedy, key=True)

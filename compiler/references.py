@@ -12,7 +12,7 @@ from spec_schema.expressions.rewrite import names_in
 from spec_schema.field_forms import Arrows, Form, Grid, Module
 from spec_schema.field_modes import Modes
 from spec_schema.places import Path
-from spec_schema.suggest import did_you_mean
+from spec_schema.suggest import did_you_mean, there_are
 
 MOST_AXES = 5
 
@@ -133,9 +133,7 @@ def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) 
     for path, names, known, what in sections:
         for name in names:
             if name not in known:
-                remedy = (
-                    did_you_mean(name, sorted(known)) or f"there are {', '.join(sorted(known))}"
-                )
+                remedy = did_you_mean(name, sorted(known)) or there_are(sorted(known))
                 findings.error("S208", (*path, name), f"'{name}' is no {what}", remedy, key=True)
 
 

@@ -124,7 +124,9 @@ def summary(diagnostics: Iterable[Diagnostic]) -> str:
         for severity in Severity
         if any(d.severity is severity for d in found)
     ]
-    files = sorted({d.source.name for d in found})
+    files = sorted({d.source.name for d in found if d.span is not None or "=" not in d.source.name})
+    if not files:  # a value on the command line, `mu=9`, is no file
+        return " and ".join(counts)
     where = files[0] if len(files) == 1 else f"{len(files)} files"
     return f"{' and '.join(counts)} in {where}"
 

@@ -1,6 +1,6 @@
 """Did you mean: the nearest known word to one that is not known."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 LONGEST = 40
 """Longer words are no slips of the pen, and comparing them costs time."""
@@ -55,3 +55,12 @@ def _folded(word: str) -> str:
 def _allowed(word: str) -> int:
     """How many slips a word of this length may hold: one in three letters, in one letter none."""
     return max(1, len(word) // 3) if len(word) > 1 else 0
+
+
+def there_are(known: Sequence[str]) -> str:
+    """All the names that there are, as a help.
+
+    >>> there_are(["mu"]), there_are(["mu", "gain"]), there_are([])
+    ('there is mu', 'there are mu, gain', 'there are none')
+    """
+    return f"there {'is' if len(known) == 1 else 'are'} {', '.join(known) or 'none'}"

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from runtime.program import Control, Program, State
+from runtime.program import Control, Kind, Program, State
 from spec_schema.units import describe, parse_unit
 from specc.faults import fault
 from specc.given import Value, settings_for
@@ -25,7 +25,6 @@ FEATURES = Detail(trajectories=0, separatrices=False)
 USUAL: Final = Tolerances()
 
 REMEDIES: Final = {
-    "V361": "name states that both have with `--axes x,v`",
     "V362": "give both a domain around the same place",
     "V363": "compare a map with a map, a flow with a flow",
 }
@@ -55,8 +54,20 @@ def compare_behaviors(
     try:
         return compare(ours, theirs, tolerances)
     except ComparisonError as error:
-        remedy = REMEDIES[error.code]
+        remedy = _shared_axes(found, wanted) if error.code == "V361" else REMEDIES[error.code]
         raise fault(error.code, found.source.file or found.name, str(error), remedy) from error
+
+
+def _shared_axes(found: Program, wanted: Program) -> str:
+    """What to compare over instead, of the states that move in both."""
+    moving = [
+        [s.name for s in program.states if s.is_driven and s.kind is not Kind.DISCRETE]
+        for program in (found, wanted)
+    ]
+    both = [name for name in moving[0] if name in moving[1]]
+    if not both:
+        return "no state moves in both: they can't be compared"
+    return f"name states that both have: `--axes {','.join(both[:2])}`"
 
 
 def _parts(program: Program) -> tuple[State | Control, ...]:

@@ -108,8 +108,8 @@ def _feature(comparison: Comparison, feature: Feature) -> str:
         case Fate.SAME | Fate.MOVED:
             gap = _words(comparison.axes, feature.moved, "by")
             period = f", period {found:.4g} s for {wanted:.4g} s" if found else ""
-            verb = "the same to within" if feature.fate is Fate.SAME else "moved by"
-            return f"{feature.fate}: {feature.found} at {at}, {verb} {gap}{period}"
+            apart = f"moved by {gap}" if feature.fate is Fate.MOVED else f"off by {gap}"
+            return f"{feature.fate}: {feature.found} at {at}, {apart}{period}"
         case Fate.CHANGED:
             return f"changed: {feature.wanted} is a {feature.found} here, at {at}"
         case Fate.MISSING:

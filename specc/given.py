@@ -10,7 +10,7 @@ from spec_schema.expressions.parse import parse
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.faults import ExpressionError, UnitFault
 from spec_schema.source import Source
-from spec_schema.suggest import did_you_mean
+from spec_schema.suggest import did_you_mean, there_are
 from spec_schema.units import Unit, parse_unit, quantity_in
 
 Value: TypeAlias = float | str
@@ -28,7 +28,7 @@ def settings_for(parts: Sequence[Part], given: Mapping[str, Value], what: str) -
     problems: list[Diagnostic] = []
     for name, value in given.items():
         if name not in known:
-            remedy = did_you_mean(name, list(known)) or f"there are {', '.join(known) or 'none'}"
+            remedy = did_you_mean(name, list(known)) or there_are(list(known))
             problems.append(_problem("V341", name, value, f"no {what} is named '{name}'", remedy))
             continue
         try:

@@ -76,13 +76,20 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except typer.Abort:
         raise KeyboardInterrupt from None
     except TyperException as error:
-        say(f"specc: {error}", "bold red")
+        say(f"specc: {_usage(error)}", "bold red")
         say("see `specc --help`, or `specc COMMAND --help` for a command's options and examples")
         return Status.BAD_INPUT
     except OSError as error:
         say(f"{error.filename}: {error.strerror}" if error.filename else str(error), "bold red")
         return Status.BAD_INPUT
     return outcome if isinstance(outcome, int) else Status.YES
+
+
+def _usage(error: TyperException) -> str:
+    """What is wrong with the arguments, and with which."""
+    words = str(error).removeprefix("Value error, ")
+    option = next(iter(getattr(getattr(error, "param", None), "opts", ())), "")
+    return f"{option}: {words}" if option.startswith("-") and option not in words else words
 
 
 def _wants_json(arguments: Sequence[str]) -> bool:

@@ -121,7 +121,7 @@ def test_each_claim_is_printed_with_its_conditions_as_soon_as_it_is_decided(
         "  - one stable node: {at: {x: sqrt(pull/b)}, within: 2 %, over: [pull]}\n", FAILS, HOLDS
     )
 
-    def impatient(*arguments: Any) -> Finding:
+    def impatient(*_arguments: Any) -> Finding:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(judge, "_judged_at", impatient)
@@ -149,3 +149,42 @@ def test_a_claim_that_holds_on_an_interval_names_both_its_ends(
     assert line.startswith("  holds for pull from 0.16 m/s to 0.36 m/s (± ")  # 0.4² to 0.6²
     assert "; below 0.16 m/s: expected exactly 1" in line
     assert "; above 0.36 m/s: expected exactly 1" in line
+
+
+TWO_MODES = """
+specc: 1
+kind: behavior
+name: two
+state:
+  x: {unit: m, domain: [-2, 2], role: both, relates: {agent: base, environment: line}}
+  side: {kind: discrete, values: [l, r], role: both, relates: {agent: base, environment: line}}
+control:
+  edge: {unit: m, domain: [0.1, 0.5], default: 0.2}
+constants:
+  k: {value: 1, unit: 1/s}
+  a: {value: 1, unit: m}
+field:
+  modes:
+    of: side
+    each:
+      l: {formula: {x: -k*(x - a)}, leave: [{when: x >= edge, to: r}]}
+      r: {formula: {x: -k*(x - 0.5*a)}, leave: [{when: x <= -edge, to: l}]}
+table: {keep: code}
+expect:
+  - one stable node: {at: {x: 0.5}, over: [edge]}
+  - no saddle
+  - exactly two fixed points
+"""
+
+
+def test_fixed_points_of_modes_are_proved_where_the_mode_is_not_left(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("two.yaml").write_text(TWO_MODES, encoding="utf-8")
+
+    assert main(["check", "--claims", "two.yaml", "--format", "json"]) == 1
+    node, saddle, two = json.loads(capsys.readouterr().out)["claims"]
+
+    # The zero of `l`, at x = 1, lies beyond its guard.
+    assert (node["ruling"], saddle["ruling"], two["ruling"]) == ("proved", "proved", "refuted")
+    assert "of each mode" in node["how"]

@@ -2,9 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterable
+from typing import Final
 
 from runtime.program import Control, Program, State
 from verifier.topology.features import AxisRange, Cycle, FixedPoint, Portrait, Settings, Standing
+
+ROUNDING: Final = 1e-9
+"""What is smaller than this share of a domain's width is shown as 0."""
 
 
 def plural(feature: str, count: int) -> str:
@@ -37,8 +41,7 @@ def described_cycle(axes: tuple[AxisRange, ...], cycle: Cycle) -> str:
 def place_words(axes: tuple[AxisRange, ...], at: Iterable[float]) -> str:
     """A place: `x = 0.5 m, v = 0 m/s`."""
     return ", ".join(
-        f"{axis.name} = {shown(axis, _clean(axis, float(value)))}"
-        for axis, value in zip(axes, at, strict=True)
+        f"{axis.name} = {shown(axis, float(value))}" for axis, value in zip(axes, at, strict=True)
     )
 
 
@@ -68,15 +71,17 @@ def value_words(part: State | Control, value: float) -> str:
     if isinstance(part, State) and part.values:
         return part.values[round(value)]
     unit = "" if part.unit.text == "1" else f" {part.unit.text}"
+    if abs(value) < ROUNDING * (part.high - part.low):
+        value = 0.0
     return f"{value / part.unit.scale + 0.0:.6g}{unit}"
 
 
 def shown(axis: AxisRange, value: float) -> str:
     """A value on an axis for people, in its unit."""
     text = "" if axis.unit.text == "1" else f" {axis.unit.text}"
-    return f"{value / axis.unit.scale + 0.0:.5g}{text}"
+    return f"{_clean(axis, value) / axis.unit.scale + 0.0:.5g}{text}"
 
 
 def _clean(axis: AxisRange, value: float) -> float:
     """Rounding errors beside the domain's width are zero."""
-    return 0.0 if abs(value) < 1e-9 * axis.width else value
+    return 0.0 if abs(value) < ROUNDING * axis.width else value

@@ -9,6 +9,7 @@ import numpy as np
 from runtime.program import Claim
 from verifier.topology.claims.members import CYCLES, POINTS, Fit, Member, members, named
 from verifier.topology.features import Completeness, Portrait, Settings
+from verifier.topology.hybrid.cycles import CHATTERING
 from verifier.topology.scenes import Scenes
 from verifier.topology.words import described_cycle, described_point, listed_features, plural
 
@@ -101,7 +102,13 @@ def _sentence(claim: Claim, seen: Portrait, found: tuple[Member, ...], outcome: 
         return f"{text}; parts of the domain are not decided"
     if near:
         return f"{text}; {_described(seen, near[0])} does not count: {near[0].why}"
-    return text if sure else f"{text}; {listed_features(seen)}"
+    return text if sure else f"{text}; {_what_there_is(seen)}"
+
+
+def _what_there_is(seen: Portrait) -> str:
+    """What there is instead, and that trajectories chatter: they come to no cycle."""
+    chattering = [note for note in seen.notes if note.startswith(CHATTERING)]
+    return "; ".join([listed_features(seen), *chattering])
 
 
 def _near_misses(found: tuple[Member, ...]) -> list[Member]:
@@ -146,10 +153,10 @@ def _basin(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], settings: Set
     name = claim.goes_to or "it"
     wanted_share = claim.share or 0.0
     if not goal:
-        nothing = f"{name} is not there: {listed_features(seen)}"
+        nothing = f"{name} is not there: {_what_there_is(seen)}"
         return Verdict(Outcome.FAILS, nothing, ())
     if seen.basins is None:
-        nothing = f"nothing attracts; {listed_features(seen)}"
+        nothing = f"nothing attracts; {_what_there_is(seen)}"
         return Verdict(Outcome.FAILS, nothing, ())
     basins = seen.basins
     share = sum(a.share for a in basins.attractors if (a.is_cycle, a.index) in goal)

@@ -81,29 +81,52 @@ def covered_by_proof(
 
     `watch(share)` is called with the share of the work that is done.
 
-    Nothing is proved of a field with modes: the zeros of one mode need not be reached.
+    With modes the zeros of each are those at which it is not left.
 
     Raises:
         SliceError: nothing moves, or too much.
     """
-    if not is_provable(claim) or scenes.program.field.guards:
+    if not is_provable(claim):
         return NOTHING
     waiting, proved, tried, about, work = deque(_pieces(claim)), 0.0, 0, "", 0
     while waiting and work < WORK:
         box = waiting.popleft()
-        prover = _Prover(scenes, claim, box)
-        tried, work = tried + 1, work + prover.work
-        outcome = prover.outcome(above)
+        provers = [_Prover(scenes, claim, box, mode) for mode in _modes(scenes.program)]
+        tried, work = tried + 1, work + sum(prover.work for prover in provers)
+        outcome = _outcome(provers, claim, above)
         watch(max(work / WORK, proved))
-        about = prover.about
+        about = provers[0].about
         if outcome is Outcome.HOLDS:
             proved += box.share
         elif outcome is Outcome.FAILS:
-            return Covered(proved, _how(about, claim, proved, tried), (prover.middle,))
+            return Covered(proved, _how(about, claim, proved, tried), (provers[0].middle,))
         elif claim.over and box.share > SMALLEST:
             waiting.extend(_halves(claim, box))
     share = 1.0 if not waiting and proved > 1.0 - SMALLEST / 2 else min(proved, 1.0 - SMALLEST)
     return Covered(share, _how(about, claim, share, tried), ())
+
+
+def _modes(program: Program) -> tuple[int | None, ...]:
+    """The modes of a field that switches; else None alone."""
+    if not program.field.guards:
+        return (None,)
+    values = next(s.values for s in program.states if s.name == program.field.mode)
+    return tuple(range(len(values)))
+
+
+def _outcome(provers: "list[_Prover]", claim: Claim, above: tuple[Claim, ...]) -> Outcome:
+    """The claim on a box: whether it holds, or fails, for all controls in it, in all modes."""
+    fits = [fit for prover in provers for fit in prover.fits(above)]
+    least = fits.count(Fit.YES)
+    unseen = 0.0 if all(prover.complete for prover in provers) else np.inf
+    most = least + fits.count(Fit.MAYBE) + unseen
+    limit = np.inf if claim.most is None else claim.most
+    if claim.least <= least and most <= limit:
+        return Outcome.HOLDS
+    cycles_count = claim.feature in {"attractor", "repeller"}
+    if least > limit or (most < claim.least and not cycles_count):
+        return Outcome.FAILS
+    return Outcome.OPEN
 
 
 def _pieces(claim: Claim) -> list[_Box]:
@@ -159,26 +182,28 @@ def _halves(claim: Claim, box: _Box) -> list[_Box]:
 
 @final
 class _Prover:
-    """All zeros of the field over one box of controls, beside a claim."""
+    """All zeros of the field, or of one mode of it, over one box of controls, beside a claim."""
 
-    def __init__(self, scenes: Scenes, claim: Claim, box: _Box) -> None:
+    def __init__(self, scenes: Scenes, claim: Claim, box: _Box, mode: int | None = None) -> None:
         self._claim = claim
+        self._mode = mode
         self._program: Program = scenes.program
         names = [span.control for span in claim.over]
         middle = [0.5 * (a + b) for a, b in zip(box.low, box.high, strict=True)]
         self.middle: Settings = (*claim.settings, *zip(names, middle, strict=True))
-        self._view: Slice = cut(self._program, scenes.axes(claim.settings), dict(self.middle))
+        self._view: Slice = cut(self._program, scenes.axes(claim.settings), self._held())
         self._controls = np.stack([self._view.u, self._view.u])
         columns = [control.name for control in self._program.controls]
         for name, low, high in zip(names, box.low, box.high, strict=True):
             self._controls[:, columns.index(name)] = low, high
         finest = FINEST if claim.over else STATES_FINEST
         self._proof: Proof = prove(self._view, self._controls, smallest=finest)
-        self.about = self._proof.about
-        self.work = 1 if self._proof.complete else 10
+        self.about = self._proof.about + (" of each mode" if mode is not None else "")
+        self.complete = self._proof.complete
+        self.work = 1 if self.complete else 10
 
-    def outcome(self, above: tuple[Claim, ...]) -> Outcome:
-        """The claim on the box: whether it holds, or fails, for all controls in it."""
+    def fits(self, above: tuple[Claim, ...]) -> list[Fit]:
+        """Of each zero, whether the claim counts it for all controls in the box."""
         known = [
             claim
             for claim in above
@@ -192,17 +217,33 @@ class _Prover:
                 fit = Fit.NO
             elif Fit.MAYBE in others:
                 fit = min(fit, Fit.MAYBE)
-            fits.append(fit)
-        least = fits.count(Fit.YES)
-        unseen = 0.0 if self._proof.complete else np.inf
-        most = least + fits.count(Fit.MAYBE) + unseen
-        limit = np.inf if self._claim.most is None else self._claim.most
-        if self._claim.least <= least and most <= limit:
-            return Outcome.HOLDS
-        cycles_count = self._claim.feature in {"attractor", "repeller"}
-        if least > limit or (most < self._claim.least and not cycles_count):
-            return Outcome.FAILS
-        return Outcome.OPEN
+            fits.append(min(fit, self._stays(i)))
+        return fits
+
+    def _held(self) -> dict[str, float]:
+        held = dict(self.middle)
+        if self._mode is not None:
+            held[self._program.field.mode] = float(self._mode)
+        return held
+
+    def _stays(self, i: int) -> Fit:
+        """Whether the mode is not left at zero i: its guards are shut there."""
+        guards = [g for g in self._program.field.guards if g.mode == self._mode]
+        if not guards:
+            return Fit.YES
+        register = self._register(self._controls, ())
+        for state, value in zip(self._view.program.states, self._view.x, strict=True):
+            register[state.name] = constant(exactly(np.array([value])))
+        zero, radius = self._proof.zeros[i], self._proof.radii[i]
+        for axis, low, high in zip(self._view.axes, zero - radius, zero + radius, strict=True):
+            register[axis.name] = constant(Interval(np.array([low]), np.array([high])))
+        fit = Fit.YES
+        for jet in run_over_boxes([guard.condition for guard in guards], register):
+            if np.all(jet.sure) and float(jet.value.low[0]) >= 0.0:
+                return Fit.NO
+            if not (np.all(jet.sure) and float(jet.value.high[0]) < 0.0):
+                fit = Fit.MAYBE
+        return fit
 
     def _fit(self, claim: Claim, i: int) -> Fit:
         """Whether zero i is one of those that a claim speaks of, for all controls of the box."""

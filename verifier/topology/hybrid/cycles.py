@@ -23,6 +23,7 @@ from verifier.topology.hybrid.saltation import monodromy, sorted_values, transve
 from verifier.topology.hybrid.switch_maps import Closed, Kind, Return, closed
 from verifier.topology.paths.seeds import spread
 from verifier.topology.slices import shortest
+from verifier.topology.words import place_words
 
 SEEDS: Final = 48
 """Trajectories in all modes together, but at least `LEAST` in each."""
@@ -48,6 +49,10 @@ ENOUGH: Final = 8
 CONTINUUM: Final = (
     "trajectories through several modes close wherever they begin: these are not listed as cycles"
 )
+
+
+CHATTERING: Final = "chattering"
+"""How a note on trajectories that switch without end begins."""
 
 
 @final
@@ -262,8 +267,7 @@ def _chattering(hybrid: Hybrid, lanes: list[Lane]) -> Iterator[str]:
             seen.setdefault((low, high), []).append(lane.end)
     for (low, high), places in seen.items():
         share = 100.0 * len(places) / len(lanes)
-        axes = zip(hybrid.view.axes, np.median(places, axis=0), strict=True)
-        where = ", ".join(f"{axis.name} = {value / axis.unit.scale:.4g}" for axis, value in axes)
+        where = place_words(hybrid.view.axes, np.median(places, axis=0))
         first, second = hybrid.modes[low], hybrid.modes[high]
         what = f"between '{first}' and '{second}'" if low != high else f"of '{first}'"
-        yield f"chattering: {share:.0f} % of the trajectories switch without end {what} ({where})"
+        yield f"{CHATTERING}: {share:.0f} % of the trajectories switch without end {what} ({where})"
