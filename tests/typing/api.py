@@ -19,6 +19,13 @@ def explore(path: Path) -> list[float]:
     program: specc.Program = specc.load_program(path)
     rollout: specc.Rollout = specc.simulate(program, {"x": 1.0}, "20 s", {"mu": "1.5"})
     portrait: specc.Portrait = specc.portrait(program, ["x", "v"], {"mu": 2.0})
+    again: specc.Portrait = specc.portrait(path, held={"mu": 1.0})
+    sweep: specc.Sweep = specc.sweep(path, "mu", [0.5, "1.0"])
+    assert sweep.portraits[0].name == again.name
+    branches: specc.Branches = specc.branches(path, "mu", "0.5:1")
+    assert not branches.bifurcations
+    comparison: specc.Comparison = specc.compare_behaviors(path, program)
+    assert comparison.adheres
     specc.draw(portrait, Path("portrait.svg"))
     specc.record(program, rollout, Path("run.mcap"))
     times: list[float] = rollout.times.tolist()
