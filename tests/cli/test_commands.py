@@ -67,7 +67,7 @@ def test_a_damaged_artifact_is_refused(capsys: pytest.CaptureFixture[str]) -> No
 
     for name in ("cut.specc", "flipped.specc"):
         assert main(["portrait", name, "--format", "json"]) == 2
-    assert "V335" in capsys.readouterr().err
+    assert "V335" in capsys.readouterr().out
 
 
 def test_portrait_gives_its_fixed_points_as_json(capsys: pytest.CaptureFixture[str]) -> None:
