@@ -112,7 +112,7 @@ def _judged(files: Sequence[Path], form: CheckFormat) -> "Iterator[tuple[Program
     from verifier.topology.claims.judge import judged
 
     for file in files:
-        if not _claims_in(file):
+        if not (_claims_in(file) or _is_sketch(file)):
             continue
         with shown_bar(file.name) as bar:
             program = load_program(file)
@@ -129,6 +129,16 @@ def _claims_in(file: Path) -> int:
 
     spec = load(file).spec
     return len(spec.expect) if isinstance(spec, BehaviorSpec) else 0
+
+
+def _is_sketch(file: Path) -> bool:
+    """Whether the spec carries claims that its author drew."""
+    from spec_schema.behavior import BehaviorSpec
+    from spec_schema.field_sketch import Sketch
+    from spec_schema.load import load
+
+    spec = load(file).spec
+    return isinstance(spec, BehaviorSpec) and isinstance(spec.field.form, Sketch)
 
 
 def _unjudged(files: Sequence[Path], found: "Sequence[tuple[Program, Finding]]") -> str:
