@@ -35,6 +35,7 @@ from compiler.sketch.claims import additions, sketch_claims
 from compiler.sketch.design import Design
 from compiler.sketch.fill import CANDIDATES, filled
 from compiler.sketch.frame import SketchRefusedError
+from compiler.sketch.gaps import narrowest_gap
 from compiler.sketch.lower import SKETCH, plan_sketch
 from compiler.tabulate import TableError
 from compiler.terms import TooManyCasesError
@@ -176,12 +177,12 @@ def _with_tables(
     try:
         tables, terms, bounds = lower_field(program, plan, settings, checked.declared, progress)
     except TableError as error:
-        remedy = error.remedy
+        message, remedy = error.message, error.remedy
         if field.formula is not None and error.code in MENDED_BY_CODE:
             remedy += "; or keep the formula as code: `table: {keep: code}`"
         if checked.design is not None:
-            remedy = SMOOTHER
-        findings.error(error.code, _path_of(error, checked), error.message, remedy, key=True)
+            remedy, message = SMOOTHER, message + narrowest_gap(checked.design)
+        findings.error(error.code, _path_of(error, checked), message, remedy, key=True)
     except ModuleError as error:
         findings.error("S233", ("field", "module", "call"), error.message, error.remedy)
     _stop_at_errors(checked)
