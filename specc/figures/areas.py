@@ -161,7 +161,7 @@ def basin_patch(palette: Palette, index: int) -> Patch:
     """How a legend shows the ground of a basin."""
     return Patch(
         facecolor=tint(palette, index),
-        hatch=2 * hatch(palette, index),
+        hatch=hatch(palette, index)[:2],
         edgecolor=palette.faint,
         linewidth=0.5,
     )

@@ -102,7 +102,7 @@ JOURNAL: Final = Palette(
     switch="#000000",
     alarm="#000000",
     tints=("#e6e6e6", "#f7f7f7", "#dadada", "#f0f0f0", "#d0d0d0", "#ffffff"),
-    hatches=("", "...", "///", "---", "xxx", "|||"),
+    hatches=("", "---", "|||", "xxx", "///", "..."),
     settings=SERIF,
 )
 
