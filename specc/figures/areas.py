@@ -35,6 +35,9 @@ CHIP: Final = 0.42
 CHIPS_ROOM: Final = 0.6
 """The part of a panel's width that shares may take; its name takes the rest."""
 
+RULED: Final = 2
+"""The tint whose colour hatching has: darker than the grounds, lighter than the field."""
+
 PERIOD: Final = 6
 """Of a hatching, in finer cells."""
 
@@ -69,7 +72,7 @@ def draw_basins(panel: Panel, portrait: Portrait) -> list[Entry]:
     for k, label in enumerate(present):
         if label >= 0 and panel.palette.hatches:
             marks = (fine == k) & HATCHES[hatch(panel.palette, label)](*np.indices(fine.shape))
-            picture[marks] = to_rgba(panel.palette.slow)
+            picture[marks] = to_rgba(panel.palette.tints[RULED])
     panel.axes.imshow(
         picture.swapaxes(0, 1),
         origin="lower",
@@ -161,7 +164,7 @@ def basin_patch(palette: Palette, index: int) -> Patch:
     """How a legend shows the ground of a basin."""
     return Patch(
         facecolor=tint(palette, index),
-        hatch=hatch(palette, index)[:2],
+        hatch=2 * hatch(palette, index),
         edgecolor=palette.faint,
         linewidth=0.5,
     )
