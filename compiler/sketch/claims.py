@@ -13,8 +13,8 @@ from compiler.sketch.design import Design, Node, Ridge
 from compiler.sketch.drawing import Orbit, Pair
 from compiler.sketch.fill import curves_of, edge_times
 from compiler.sketch.frame import Frame
+from compiler.sketch.graphs import graph_through
 from compiler.sketch.pacing import TURN
-from compiler.sketch.ridges import on_ridge
 from runtime.arrays import Array
 from runtime.code import Code
 from runtime.program import Claim, Place, Reach
@@ -79,7 +79,7 @@ def sketch_claims(design: Design, loaded: Loaded) -> tuple[Claim, ...]:
         places = _places(node.point.at, design.frame)
         found.append(told(_sentence(node), feature, node.point.path, places=places))
     for ridge in design.ridges:
-        saddle = design.frame.place(on_ridge(ridge.through, ridge.saddle))
+        saddle = design.frame.place(graph_through(ridge.through).nearest(ridge.saddle))
         places = _places(saddle, design.frame)
         found.append(told(_on_ridge(ridge), "saddle", ridge.line.path, places=places))
     for orbit, centre, curve in _orbits(design):

@@ -13,6 +13,7 @@ import numpy as np
 
 from compiler.lower_parts import code_of
 from compiler.sketch.frame import Spot
+from compiler.sketch.graphs import quarter_turn
 from runtime.arrays import Array
 from runtime.machine import evaluate
 from spec_schema.expressions.tree import Expr
@@ -172,11 +173,6 @@ class ArrowModel:
 def saturated(x: Array) -> Array:
     """`x` near 0, and never more than `REACH`."""
     return x / np.sqrt(1.0 + (x / REACH) ** 2)
-
-
-def quarter_turn(v: Array) -> Array:
-    """Vectors (..., 2) turned from the first axis to the second."""
-    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -15,7 +15,8 @@ import numpy as np
 
 from compiler.sketch.blend import Blend
 from compiler.sketch.curves import Curve
-from compiler.sketch.models import NodeModel, Settings, quarter_turn, saturated
+from compiler.sketch.graphs import quarter_turn
+from compiler.sketch.models import NodeModel, Settings, saturated
 from compiler.sketch.pacing import smooth_step
 from runtime.arrays import Array, Booleans
 from spec_schema.expressions.tree import Expr

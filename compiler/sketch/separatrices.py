@@ -7,8 +7,8 @@ import numpy as np
 from compiler.sketch.design import Ridge
 from compiler.sketch.drawing import Line, Pair
 from compiler.sketch.frame import SAME, Frame, SketchRefusedError, spelled
+from compiler.sketch.graphs import graph_through
 from compiler.sketch.polygons import distance_to_line
-from compiler.sketch.ridges import on_ridge
 from runtime.arrays import Array
 from spec_schema.expressions.evaluate import evaluate
 
@@ -46,7 +46,7 @@ def _saddle_on(line: Line, drawn: Pair, through: Array, frame: Frame) -> Array:
         message = f"the saddle of '{line.name}' moves along the line with the controls"
         remedy = "place it at a fixed share between the outermost places of the sketch"
         raise SketchRefusedError("S265", path, message, remedy)
-    near = on_ridge(through, _on_polyline(through, spot.at))
+    near = graph_through(through).nearest(_on_polyline(through, spot.at))
     off = min(float(np.linalg.norm(spot.at - near)), distance_to_line(through, spot.at))
     if off > BESIDE:
         there = ", ".join(spelled(frame.place(near), frame))

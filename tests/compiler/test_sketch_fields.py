@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiler.compile import compile_file, compile_loaded
+from compiler.sketch.graphs import graph_through
 from compiler.sketch.index import Item, completed, index_of
 from compiler.sketch.pacing import timed_paces
-from compiler.sketch.ridges import on_ridge, ridge_through
+from compiler.sketch.ridges import ridge_through
 from runtime.flow import flow_of, rates
 from runtime.integrators import adaptive
 from runtime.program import Program
@@ -153,7 +154,7 @@ def test_the_saddle_of_a_bent_separatrix_lies_on_it() -> None:
     points = np.array([[0.0, -1.0], [0.6, -0.2], [0.5, 0.4], [-0.2, 1.0]])
     near = np.array([0.1, 0.0])
 
-    saddle = on_ridge(points, near)
+    saddle = graph_through(points).nearest(near)
 
     model = ridge_through(points, near, (HALF, HALF))
     assert model.distance(saddle[np.newaxis], {}) == pytest.approx(0.0, abs=1e-12)
