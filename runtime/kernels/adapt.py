@@ -48,7 +48,7 @@ from runtime.kernels.pace import (
     REJECTED,
     ROWS,
     SAMPLE,
-    TODO,
+    TASK,
     TRAJECTORY,
     TRIES,
     Aim,
@@ -129,7 +129,7 @@ def _judge_all(
 ) -> None:
     """Judge the steps of all living lanes but those that are to be repeated, or to jump at once."""
     for i in range(lanes):
-        if w[at.alive, i] != 0.0 and pace[TODO, i] == JUDGE:
+        if w[at.alive, i] != 0.0 and pace[TASK, i] == JUDGE:
             _judge(w, at, pace, domain, moving, atol, aim, times, i, states, ended)
 
 

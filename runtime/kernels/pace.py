@@ -24,7 +24,7 @@ from runtime.kernels.cache import part
 from runtime.kernels.tape import LANES
 
 LEAST_ERROR: Final = 1e-4
-TRAJECTORY, SAMPLE, TRIES, FRESH, REJECTED, GUARD, CUT, SWITCHES, TODO = range(9)
+TRAJECTORY, SAMPLE, TRIES, FRESH, REJECTED, GUARD, CUT, SWITCHES, TASK = range(9)
 ROWS: Final = 9
 NO_GUARD, NOT_LOOKED = -1, -2
 JUDGE, TRY_AGAIN, JUMP = range(3)

@@ -37,7 +37,7 @@ from runtime.kernels.pace import (
     REJECTED,
     SAMPLE,
     SWITCHES,
-    TODO,
+    TASK,
     TRAJECTORY,
     TRIES,
     TRY_AGAIN,
@@ -78,7 +78,7 @@ def find_events(
     """Look for guards that open in the steps that were tried, and note what to do with each."""
     for lane in range(lanes):
         if w[at.alive, lane] != 0.0:
-            pace[TODO, lane] = _find_event(
+            pace[TASK, lane] = _find_event(
                 gates, v, w, at, pace, domain, moving, atol, aim.rtol, lane
             )
 
