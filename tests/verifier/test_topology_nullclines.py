@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from runtime.arrays import Array
@@ -42,6 +42,7 @@ def test_branches_that_cross_go_straight_through_one_another() -> None:
     turn=st.floats(0.0, math.pi),
     k=st.floats(0.4, 2.5),
 )
+@example(a=0.0, b=-1.304850494604815, turn=1.0, k=1.0)  # 1e-5 beside an edge of the grid
 @settings(max_examples=25, deadline=None)
 def test_two_lines_that_cross_anywhere_meet_there(
     a: float, b: float, turn: float, k: float

@@ -31,7 +31,7 @@ def polylines(
     crossings: Crossings,
 ) -> tuple[Array, ...]:
     """Lines (k, 2) through the zeros on the edges along axis 0 and along axis 1."""
-    numbers, places, kinds = _numbered(zeros)
+    numbers, places, kinds = _numbered(_opened(zeros))
     # A kind for the empty slots, which have number -1.
     kind = np.append(kinds, 0)[numbers]
     pairs: Pairs = []
@@ -49,6 +49,25 @@ def polylines(
         else:
             pairs += _past(f_at, row, places)
     return _chained(pairs, places)
+
+
+def _opened(zeros: tuple[EdgeZeros, EdgeZeros]) -> tuple[EdgeZeros, EdgeZeros]:
+    """The zeros, with each one that touches and leads nowhere turned into two that cross.
+
+    Two lines that cross just beside an edge meet it twice, at places too near to be told apart.
+    """
+    flat, tall = (np.sum(one.kind == TOUCHING, axis=-1) for one in zeros)
+    inside = flat[:, :-1] + flat[:, 1:] + tall[:-1] + tall[1:]
+    opened = []
+    for along, one in enumerate(zeros):
+        # The most of the cells on both sides of the edge.
+        padded = np.pad(inside, [(0, 0), (1, 1)] if along == 0 else [(1, 1), (0, 0)])
+        sides = (padded[:, :-1], padded[:, 1:]) if along == 0 else (padded[:-1], padded[1:])
+        alone = (one.kind[..., 0] == TOUCHING) & (np.maximum(*sides) == 1)
+        kind = np.where(alone[..., None], CROSSING, one.kind)
+        twice = np.repeat(one.at[..., :1, :], 2, axis=-2)
+        opened.append(EdgeZeros(kind, np.where(alone[..., None, None], twice, one.at)))
+    return opened[0], opened[1]
 
 
 def _numbered(zeros: tuple[EdgeZeros, EdgeZeros]) -> tuple[Integers, Array, Integers]:
