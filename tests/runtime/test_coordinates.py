@@ -20,7 +20,7 @@ from runtime.machine import evaluate, run_tape
 from runtime.program import Axis, Control, Coordinate, Kind, Method, Program, State, Term
 from runtime.tape import Sum, pack
 from tests.runtime.behaviors import NOWHERE, control, formula_program, state, tabulated
-from verifier.fidelity.needs import names_read
+from verifier.fidelity.stretches.needs import names_read
 
 MIDDLE, HALF = "x c sub", "x c sub s div"
 MOVING = (

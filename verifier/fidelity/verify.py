@@ -16,14 +16,14 @@ from runtime.flow import flow_of
 from runtime.program import Fidelity, Program
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
-from verifier.fidelity.departure import CONFIDENCE
-from verifier.fidelity.judgement import places_of, results_of
-from verifier.fidelity.needs import held, needs_of, parts_of
-from verifier.fidelity.regions import axes_of, coverage_of
-from verifier.fidelity.segments import Segments, on_circle, segments_of
-from verifier.fidelity.spans import contains, length, merge
-from verifier.fidelity.study import Study, study_of
-from verifier.fidelity.verdict import decide, not_told, notes_of, too_short
+from verifier.fidelity.judging.departure import CONFIDENCE
+from verifier.fidelity.judging.judgement import places_of, results_of
+from verifier.fidelity.judging.regions import axes_of, coverage_of
+from verifier.fidelity.judging.verdict import decide, not_told, notes_of, too_short
+from verifier.fidelity.shooting.study import Study, study_of
+from verifier.fidelity.stretches.needs import held, needs_of, parts_of
+from verifier.fidelity.stretches.segments import Segments, on_circle, segments_of
+from verifier.fidelity.stretches.spans import contains, length, merge
 from verifier.report.report import (
     CellAxis,
     Coverage,

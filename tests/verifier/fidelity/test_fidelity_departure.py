@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from verifier.fidelity.departure import (
+from verifier.fidelity.judging.departure import (
     blocks_of,
     correlation_time,
     departure_of,

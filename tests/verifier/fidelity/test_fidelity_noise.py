@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from verifier.fidelity.noise import averaged, plain_noise, quantum_of
+from verifier.fidelity.shooting.noise import averaged, plain_noise, quantum_of
 from verifier.fidelity.verify import verify
 from verifier.report.report import Noise
 

@@ -3,7 +3,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from verifier.fidelity.regions import coverage_of, holm, region_means, worst_of
+from verifier.fidelity.judging.regions import coverage_of, holm, region_means, worst_of
 from verifier.fidelity.verify import verify
 from verifier.report.report import CellAxis, Standing, Verdict
 

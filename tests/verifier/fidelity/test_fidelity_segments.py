@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.code import Code
-from verifier.fidelity.needs import needs_of
-from verifier.fidelity.segments import segments_of
-from verifier.fidelity.spans import contains, intersect, length, merge, spans_of, without
+from verifier.fidelity.stretches.needs import needs_of
+from verifier.fidelity.stretches.segments import segments_of
+from verifier.fidelity.stretches.spans import contains, intersect, length, merge, spans_of, without
 from verifier.fidelity.verify import verify
 from verifier.report.report import Verdict
 from verifier.traces.trace import Trace

@@ -3,11 +3,11 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from verifier.fidelity.grid import flow_grid
-from verifier.fidelity.needs import needs_of
-from verifier.fidelity.samples import nearest, samples_of, turned
-from verifier.fidelity.spans import spans_of
-from verifier.fidelity.windows import chosen_samples, windows_of
+from verifier.fidelity.shooting.grid import flow_grid
+from verifier.fidelity.shooting.samples import nearest, samples_of, turned
+from verifier.fidelity.shooting.windows import chosen_samples, windows_of
+from verifier.fidelity.stretches.needs import needs_of
+from verifier.fidelity.stretches.spans import spans_of
 
 
 def test_windows_stay_in_their_stretch_and_start_every_half_horizon(scenes: ModuleType) -> None:

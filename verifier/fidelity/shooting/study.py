@@ -7,17 +7,17 @@ import numpy as np
 
 from runtime.flow import Flow
 from runtime.program import Fidelity
-from verifier.fidelity.accuracy import STEPS, accurate_grid
-from verifier.fidelity.grid import flow_grid, tick_grid
-from verifier.fidelity.input_noise import with_input_noise
-from verifier.fidelity.needs import Needs, period_of
-from verifier.fidelity.noise import noise_of
-from verifier.fidelity.plan import Plan
-from verifier.fidelity.prediction import Model
-from verifier.fidelity.samples import samples_of
-from verifier.fidelity.segments import Segments
-from verifier.fidelity.shooting import Shots, shoot
-from verifier.fidelity.windows import windows_of
+from verifier.fidelity.shooting.accuracy import STEPS, accurate_grid
+from verifier.fidelity.shooting.grid import flow_grid, tick_grid
+from verifier.fidelity.shooting.input_noise import with_input_noise
+from verifier.fidelity.shooting.noise import noise_of
+from verifier.fidelity.shooting.plan import Plan
+from verifier.fidelity.shooting.prediction import Model
+from verifier.fidelity.shooting.samples import samples_of
+from verifier.fidelity.shooting.shooting import Shots, shoot
+from verifier.fidelity.shooting.windows import windows_of
+from verifier.fidelity.stretches.needs import Needs, period_of
+from verifier.fidelity.stretches.segments import Segments
 from verifier.report.report import Noise
 
 

@@ -12,7 +12,7 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
-from verifier.fidelity.samples import Samples, nearest
+from verifier.fidelity.shooting.samples import Samples, nearest
 
 STRIDE = 0.5
 SPAN = 0.05

@@ -13,8 +13,8 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
-from verifier.fidelity.needs import Needs, held, parts_of, period_of
-from verifier.fidelity.spans import contains, intersect, length, spans_of, without
+from verifier.fidelity.stretches.needs import Needs, held, parts_of, period_of
+from verifier.fidelity.stretches.spans import contains, intersect, length, spans_of, without
 from verifier.report.report import Exclusion
 from verifier.traces.trace import Series
 

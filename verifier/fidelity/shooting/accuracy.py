@@ -4,10 +4,10 @@ import numpy as np
 
 from runtime.arrays import Array
 from runtime.program import Fidelity
-from verifier.fidelity.grid import Grid, flow_grid
-from verifier.fidelity.plan import Plan
-from verifier.fidelity.prediction import Model, predict
-from verifier.fidelity.samples import Samples, measured_states, nearest
+from verifier.fidelity.shooting.grid import Grid, flow_grid
+from verifier.fidelity.shooting.plan import Plan
+from verifier.fidelity.shooting.prediction import Model, predict
+from verifier.fidelity.shooting.samples import Samples, measured_states, nearest
 
 STEPS = 20
 """At least so many integration steps to the horizon."""

@@ -15,11 +15,11 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
-from verifier.fidelity.noise import averaged
-from verifier.fidelity.plan import Plan
-from verifier.fidelity.prediction import chunks, predict
-from verifier.fidelity.samples import Samples, edges, measured_states, turned
-from verifier.fidelity.windows import Chosen, chosen_samples, closest
+from verifier.fidelity.shooting.noise import averaged
+from verifier.fidelity.shooting.plan import Plan
+from verifier.fidelity.shooting.prediction import chunks, predict
+from verifier.fidelity.shooting.samples import Samples, edges, measured_states, turned
+from verifier.fidelity.shooting.windows import Chosen, chosen_samples, closest
 from verifier.report.report import Noise
 
 NUDGE = 1e-5

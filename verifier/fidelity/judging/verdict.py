@@ -6,10 +6,10 @@ from typing import final
 import numpy as np
 
 from runtime.program import Unit
-from verifier.fidelity import sentences
-from verifier.fidelity.needs import Needs
-from verifier.fidelity.segments import Segments
-from verifier.fidelity.study import Study
+from verifier.fidelity.judging import sentences
+from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.stretches.needs import Needs
+from verifier.fidelity.stretches.segments import Segments
 from verifier.report.report import Coverage, Standing, VariableResult, Verdict
 from verifier.report.wording import listed, number, percent, seconds
 

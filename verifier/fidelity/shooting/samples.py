@@ -7,9 +7,9 @@ import numpy as np
 
 from runtime.arrays import Array, Integers
 from runtime.program import Kind, State
-from verifier.fidelity.grid import Grid
-from verifier.fidelity.needs import Needs, period_of
-from verifier.fidelity.prediction import Model
+from verifier.fidelity.shooting.grid import Grid
+from verifier.fidelity.shooting.prediction import Model
+from verifier.fidelity.stretches.needs import Needs, period_of
 from verifier.traces.trace import Series
 
 

@@ -12,8 +12,8 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Integers
-from verifier.fidelity.needs import Needs, held, period_of
-from verifier.fidelity.segments import GAP_PERIODS, GAP_SECONDS
+from verifier.fidelity.stretches.needs import Needs, held, period_of
+from verifier.fidelity.stretches.segments import GAP_PERIODS, GAP_SECONDS
 
 CLOCK_SLACK = 0.2
 """How far the sample period may be from a multiple of a map's clock, as a share of it."""

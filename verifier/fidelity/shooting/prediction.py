@@ -11,7 +11,7 @@ import numpy as np
 from runtime.arrays import Array, Integers
 from runtime.flow import Flow
 from runtime.integrators import rk4
-from verifier.fidelity.grid import Grid
+from verifier.fidelity.shooting.grid import Grid
 
 BATCH = 4_000_000
 """At most so many numbers in one batch of states: bounds the memory that a long trace takes."""

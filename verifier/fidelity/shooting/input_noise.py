@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from runtime.arrays import Array
-from verifier.fidelity.grid import moved_inputs
-from verifier.fidelity.noise import plain_noise
-from verifier.fidelity.plan import Plan
-from verifier.fidelity.prediction import Model, chunks, predict
-from verifier.fidelity.samples import Samples
-from verifier.fidelity.shooting import Shots
-from verifier.fidelity.windows import Windows, chosen_samples
+from verifier.fidelity.shooting.grid import moved_inputs
+from verifier.fidelity.shooting.noise import plain_noise
+from verifier.fidelity.shooting.plan import Plan
+from verifier.fidelity.shooting.prediction import Model, chunks, predict
+from verifier.fidelity.shooting.samples import Samples
+from verifier.fidelity.shooting.shooting import Shots
+from verifier.fidelity.shooting.windows import Windows, chosen_samples
 
 COPIES = 12
 """So many noisy copies of the inputs are predicted."""

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import final
 
-from verifier.fidelity.needs import Needs
-from verifier.fidelity.prediction import Model
-from verifier.fidelity.samples import Samples
-from verifier.fidelity.windows import Windows
+from verifier.fidelity.shooting.prediction import Model
+from verifier.fidelity.shooting.samples import Samples
+from verifier.fidelity.shooting.windows import Windows
+from verifier.fidelity.stretches.needs import Needs
 
 FRACTIONS = (0.2, 0.5, 1.0)
 """The horizons that are reported, as shares of the declared one, which comes last."""

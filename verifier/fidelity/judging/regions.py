@@ -8,8 +8,8 @@ from scipy import special
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.program import Control, Fidelity, Kind, Program, State
-from verifier.fidelity.departure import CONFIDENCE, count_of, mean_of, standard_error
-from verifier.fidelity.needs import Needs, names_read, parts_of
+from verifier.fidelity.judging.departure import CONFIDENCE, count_of, mean_of, standard_error
+from verifier.fidelity.stretches.needs import Needs, names_read, parts_of
 from verifier.report.report import CellAxis, Coverage, RegionMean, Standing
 
 CELLS = {1: 20, 2: 10, 3: 5}

@@ -25,9 +25,9 @@ import math
 import numpy as np
 
 from runtime.arrays import Array, Booleans
-from verifier.fidelity.prediction import Model, predict
-from verifier.fidelity.samples import Samples, measured_states, turned
-from verifier.fidelity.spans import contains
+from verifier.fidelity.shooting.prediction import Model, predict
+from verifier.fidelity.shooting.samples import Samples, measured_states, turned
+from verifier.fidelity.stretches.spans import contains
 from verifier.report.report import Noise
 
 MOST = 20_000

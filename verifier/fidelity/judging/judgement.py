@@ -4,20 +4,20 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.program import Fidelity, Program
-from verifier.fidelity.departure import (
+from verifier.fidelity.judging.departure import (
     Departure,
     blocks_of,
     departure_of,
     mean_of,
     standing_of,
 )
-from verifier.fidelity.needs import parts_of
-from verifier.fidelity.prediction import predict
-from verifier.fidelity.regions import region_means, worst_of
-from verifier.fidelity.samples import turned
-from verifier.fidelity.segments import on_circle
-from verifier.fidelity.shooting import Errors
-from verifier.fidelity.study import Study
+from verifier.fidelity.judging.regions import region_means, worst_of
+from verifier.fidelity.shooting.prediction import predict
+from verifier.fidelity.shooting.samples import turned
+from verifier.fidelity.shooting.shooting import Errors
+from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.stretches.needs import parts_of
+from verifier.fidelity.stretches.segments import on_circle
 from verifier.report.report import (
     CellAxis,
     HorizonFigure,

@@ -4,7 +4,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans
 from runtime.program import Unit
-from verifier.fidelity.study import Study
+from verifier.fidelity.shooting.study import Study
 from verifier.report.report import Coverage, Interval, RegionMean, Standing, VariableResult
 from verifier.report.wording import listed, number, percent, quantity, seconds, span
 

@@ -1,0 +1,1 @@
+"""From the errors of the windows to the verdict."""

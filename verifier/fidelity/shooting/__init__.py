@@ -1,0 +1,1 @@
+"""Multiple shooting: windows of the trace, predicted from fitted starts."""

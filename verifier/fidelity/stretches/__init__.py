@@ -1,0 +1,1 @@
+"""Which parts of a trace can be judged."""
