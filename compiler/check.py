@@ -21,7 +21,8 @@ from compiler.sketch.compose import compose
 from compiler.sketch.design import Design
 from compiler.sketch.drawing import Drawing
 from compiler.sketch.frame import SketchRefusedError
-from runtime.program import Binding, Claim, Fidelity
+from runtime.claim import Claim
+from runtime.program import Binding, Fidelity
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_modes import Modes

@@ -8,8 +8,9 @@ from compiler.findings import Findings
 from compiler.lower_parts import code_of
 from compiler.quantities import SECOND, si_limit, si_value
 from compiler.scope import Scope, checked, scope_of
+from runtime.claim import Place, Reach, Span
 from runtime.code import Code
-from runtime.program import Control, Kind, Place, Reach, Span, State
+from runtime.program import Control, Kind, State
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expect import ALL, ClaimOptions
 from spec_schema.expressions.evaluate import evaluate

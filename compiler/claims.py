@@ -7,7 +7,7 @@ from compiler.claim_text import claim_text
 from compiler.claim_values import ClaimReader
 from compiler.declare import Declarations
 from compiler.findings import Findings
-from runtime.program import Claim
+from runtime.claim import Claim
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.claim_sentences import BASIN, CYCLES, Sentence, SentenceError, read_sentence
 from spec_schema.expect import ClaimOptions, ClaimSpec

@@ -6,7 +6,8 @@ from compiler.claims import names_read
 from compiler.declare import Declarations
 from compiler.findings import Findings
 from compiler.read_expressions import Expressions, signals
-from runtime.program import Claim, Role
+from runtime.claim import Claim
+from runtime.program import Role
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.field_forms import Arrows, Form, Grid, Module

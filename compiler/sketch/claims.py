@@ -16,8 +16,8 @@ from compiler.sketch.frame import Frame
 from compiler.sketch.graphs import graph_through
 from compiler.sketch.pacing import TURN
 from runtime.arrays import Array
+from runtime.claim import Claim, Place, Reach
 from runtime.code import Code
-from runtime.program import Claim, Place, Reach
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.tree import Expr
 from spec_schema.load import Loaded

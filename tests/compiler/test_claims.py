@@ -3,7 +3,7 @@
 import pytest
 
 from compiler.check import check_behavior
-from runtime.program import Claim
+from runtime.claim import Claim
 from spec_schema import claim_sentences
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.load import load_source

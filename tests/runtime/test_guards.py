@@ -14,11 +14,12 @@ from scipy.integrate import solve_ivp
 from compiler.dump import dump
 from runtime.arrays import Array
 from runtime.artifact import ArtifactError, from_bytes, to_bytes
+from runtime.claim import Claim, Place, Span
 from runtime.code import Code
 from runtime.flow import flow_of, in_one_mode
 from runtime.integrators import adaptive
 from runtime.kernels.tape import LANES
-from runtime.program import Axis, Claim, Method, Place, Program, Span
+from runtime.program import Axis, Method, Program
 from runtime.recording import recorded
 from runtime.rollout import Ending
 from runtime.simulate import FixedSteps, simulate

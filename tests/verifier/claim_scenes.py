@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
+from runtime.claim import Claim, Place, Span
 from runtime.code import Code
-from runtime.program import Claim, Place, Program, Span
+from runtime.program import Program
 from tests.verifier.topology_scenes import behavior, control, state
 
 X, Y = state("x", -2.0, 2.0), state("y", -2.0, 2.0)

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from runtime.claim import Claim, Reach, Span
 from runtime.code import Code
-from runtime.program import Claim, Program, Reach, Span
+from runtime.program import Program
 from tests.verifier.claim_scenes import CROSS, FOLD, FORK, MU, ONSET, X, Y, all_of, at, claim
 from tests.verifier.topology_scenes import behavior, control, linear, state, tabulated, van_der_pol
 from verifier.topology.branches.continuation import Change

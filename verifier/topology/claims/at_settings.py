@@ -6,7 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.program import Claim
+from runtime.claim import Claim
 from verifier.topology.claims.members import CYCLES, POINTS, Fit, Member, members, named
 from verifier.topology.features import Completeness, Portrait, Settings
 from verifier.topology.hybrid.cycles import CHATTERING

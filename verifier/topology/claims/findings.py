@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import final
 
-from runtime.program import Claim
+from runtime.claim import Claim
 from verifier.topology.branches.continuation import Change
 from verifier.topology.features import Settings
 

@@ -8,7 +8,8 @@ one value of a control and fails at another, the boundary is located.
 from collections.abc import Iterator
 from typing import Final
 
-from runtime.program import Claim, Program
+from runtime.claim import Claim
+from runtime.program import Program
 from verifier.topology.claims.at_settings import Outcome, Verdict, verdict_at
 from verifier.topology.claims.findings import Finding, Ruling, Witness
 from verifier.topology.claims.over_boxes import covered_by_proof

@@ -7,9 +7,10 @@ from typing import Final, TypeAlias, final
 import numpy as np
 
 from runtime.arrays import Array
+from runtime.claim import Claim
 from runtime.code import Code
 from runtime.machine import evaluate
-from runtime.program import Claim, Program
+from runtime.program import Program
 from verifier.topology.features import (
     AxisRange,
     Cycle,

@@ -14,10 +14,11 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array
+from runtime.claim import Claim
 from runtime.intervals import Interval, add, common, exactly, multiply, square, subtract
 from runtime.jet_machine import run_over_boxes
 from runtime.jets import SURE, Jet, constant
-from runtime.program import Claim, Program
+from runtime.program import Program
 from verifier.topology.claims.at_settings import BASIN, Outcome
 from verifier.topology.claims.members import POINTS, Fit
 from verifier.topology.claims.watching import Watch, unwatched

@@ -10,7 +10,7 @@ from typing import Final, TypeAlias, final
 import numpy as np
 
 from runtime.arrays import Array
-from runtime.program import Claim, Span
+from runtime.claim import Claim, Span
 from verifier.topology.branches.boundaries import CLOSE, COARSE, Bracket, explained, narrowed
 from verifier.topology.claims.at_settings import BASIN, Outcome, Verdict, needs_cycles, verdict_at
 from verifier.topology.claims.findings import Boundary, Finding, Ruling, Witness
