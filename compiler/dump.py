@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from runtime.program import Axis, Field, Kind, Program, State, Table
+from runtime.program import Field, Kind, Program, State
+from runtime.table import Axis, Table
 
 
 def dump(program: Program, notes: tuple[str, ...] = ()) -> str:

@@ -12,7 +12,7 @@ from compiler.ranges import Range, range_of, scales
 from compiler.tabulate import Sampler
 from runtime.arrays import Array, frozen
 from runtime.interpolation import lookup, tabulate
-from runtime.program import Axis, Method, Table
+from runtime.table import Axis, Method, Table
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.field_forms import Grid
 

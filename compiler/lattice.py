@@ -9,7 +9,7 @@ import scipy
 
 from compiler.tabulate import Sampler
 from runtime.arrays import Array
-from runtime.program import Method
+from runtime.table import Method
 
 
 def is_even(nodes: Array, low: float, high: float, *, periodic: bool) -> bool:

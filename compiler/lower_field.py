@@ -26,7 +26,8 @@ from runtime.arrays import Array
 from runtime.code import Code
 from runtime.flow import Source, flow_of, next_states, rates
 from runtime.machine import evaluate
-from runtime.program import ErrorBound, Field, Method, Program, Table, Term
+from runtime.program import ErrorBound, Field, Program, Term
+from runtime.table import Method, Table
 from spec_schema.expressions.tree import Expr
 
 Progress: TypeAlias = Callable[[str, int, int], None]

@@ -24,7 +24,8 @@ from compiler.terms import summands
 from runtime.arrays import Array
 from runtime.code import ONE, Code
 from runtime.machine import evaluate
-from runtime.program import Coordinate, Kind, Table
+from runtime.program import Coordinate, Kind
+from runtime.table import Table
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.bounds import bounds
 from spec_schema.expressions.printers.text import to_text

@@ -7,7 +7,8 @@ from typing import final
 from compiler.declare import Declarations
 from compiler.findings import Findings
 from compiler.quantities import SECOND, per_second, si_value
-from runtime.program import Kind, Method
+from runtime.program import Kind
+from runtime.table import Method
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.field_forms import Formula, Step
 from spec_schema.field_modes import Modes

@@ -15,7 +15,7 @@ import numpy as np
 from compiler.ranges import Range
 from runtime.arrays import Array
 from runtime.interpolation import lookup, tabulate
-from runtime.program import Axis, Method, Table
+from runtime.table import Axis, Method, Table
 
 Sampler: TypeAlias = Callable[[Array], Array]
 """Points (N, d) to values (N, m)."""

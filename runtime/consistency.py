@@ -12,7 +12,8 @@ import numpy as np
 
 from runtime.code import Code
 from runtime.kernels.tape import MOST_AXES
-from runtime.program import Axis, Constant, Control, Field, Kind, Method, Program, State, Table
+from runtime.program import Constant, Control, Field, Kind, Program, State
+from runtime.table import Axis, Method, Table
 from runtime.tape import check_code
 
 MOST_CODE: Final = 2_000_000

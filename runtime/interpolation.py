@@ -14,7 +14,7 @@ import numpy.typing as npt
 from runtime import splines
 from runtime.arrays import Array, Booleans, Integers, frozen
 from runtime.kernels.interpolate import block_address, jacobian_points, lookup_points
-from runtime.program import Axis, Method, Table
+from runtime.table import Axis, Method, Table
 
 MAXIMUM_AXES = 5
 

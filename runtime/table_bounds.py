@@ -15,7 +15,7 @@ from runtime.arrays import Array, Booleans
 from runtime.intervals import Interval, add, chosen, exactly, multiply, outward, whole
 from runtime.jets import Jet, constant
 from runtime.kernels.cells import EPSILON, ROUNDINGS, enclose_cells
-from runtime.program import Axis, Method, Table
+from runtime.table import Axis, Method, Table
 from runtime.tape import read_only_integers, read_only_view
 
 CELL: Final = 4.0 * EPSILON

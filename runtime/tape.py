@@ -19,7 +19,8 @@ from runtime.kernels import tape as numbers
 from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.kernels.tape import MOST_AXES, TABLE, Tape
-from runtime.program import Axis, Coordinate, Method, Table
+from runtime.program import Coordinate
+from runtime.table import Axis, Method, Table
 
 MOST_TOKENS: Final = 200_000
 """More in one piece of code is refused: packing takes memory in proportion."""

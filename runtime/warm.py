@@ -14,7 +14,8 @@ from runtime.kernels.cache import is_warm, mark_warm
 from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.machine import evaluate
-from runtime.program import Axis, Field, Kind, Method, Origin, Program, Role, State, Unit
+from runtime.program import Field, Kind, Origin, Program, Role, State, Unit
+from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
 
 __all__ = ["is_warm", "warm"]

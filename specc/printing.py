@@ -7,8 +7,9 @@ from pathlib import Path
 from compiler.compile import Compiled
 from compiler.quantities import rate_text
 from runtime.arrays import Array
-from runtime.program import Kind, Program, Table, Unit
+from runtime.program import Kind, Program, Unit
 from runtime.rollout import Ending, Rollout
+from runtime.table import Table
 
 
 def compile_record(compiled: Compiled, path: Path, artifact: bytes) -> dict[str, object]:

@@ -28,7 +28,7 @@ from scipy.interpolate import NdBSpline, RegularGridInterpolator, make_interp_sp
 
 from runtime.arrays import Array
 from runtime.interpolation import lookup, lookup_into, tabulate
-from runtime.program import Axis, Method
+from runtime.table import Axis, Method
 
 POINTS = 1_000_000
 ROUNDS = 9

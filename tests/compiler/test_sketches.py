@@ -6,7 +6,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from compiler.lattice import between_nodes, closed, is_even
 from compiler.scattered import SketchError, piecewise_linear, reaches_beyond, thin_plate
-from runtime.program import Method
+from runtime.table import Method
 
 LOW, HIGH = np.array([-1.0, -2.0]), np.array([1.0, 2.0])
 RNG = np.random.default_rng(7)

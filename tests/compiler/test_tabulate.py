@@ -7,7 +7,7 @@ from compiler.ranges import Range
 from compiler.tabulate import TableError, Wanted, tabulate_function
 from runtime.arrays import Array
 from runtime.interpolation import lookup
-from runtime.program import Method
+from runtime.table import Method
 
 LINE = Range("x", -1.0, 1.0, periodic=False)
 SQUARE = (LINE, Range("y", 0.0, 3.0, periodic=False))

@@ -8,20 +8,8 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.code import Code
 from runtime.interpolation import tabulate
-from runtime.program import (
-    Axis,
-    Control,
-    Field,
-    Kind,
-    Method,
-    Origin,
-    Output,
-    Program,
-    Role,
-    State,
-    Term,
-    Unit,
-)
+from runtime.program import Control, Field, Kind, Origin, Output, Program, Role, State, Term, Unit
+from runtime.table import Axis, Method
 
 ONE = Unit("1", 1.0)
 NOWHERE = "spec.yaml:1:1"

@@ -24,11 +24,11 @@ from runtime.program import (
     Feasibility,
     Fidelity,
     Kind,
-    Method,
     Program,
     Realization,
     Unit,
 )
+from runtime.table import Method
 from tests.runtime.behaviors import (
     NOWHERE,
     formula_program,

@@ -17,7 +17,8 @@ from runtime.flow import Source, flow_of, jacobian, rates
 from runtime.integrators import adaptive
 from runtime.interpolation import lookup
 from runtime.machine import evaluate, run_tape
-from runtime.program import Axis, Control, Coordinate, Kind, Method, Program, State, Term
+from runtime.program import Control, Coordinate, Kind, Program, State, Term
+from runtime.table import Axis, Method
 from runtime.tape import Sum, pack
 from tests.runtime.behaviors import NOWHERE, control, formula_program, state, tabulated
 from verifier.fidelity.stretches.needs import names_read

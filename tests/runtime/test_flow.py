@@ -8,7 +8,8 @@ import pytest
 
 from runtime.code import Code
 from runtime.flow import Flow, Source, flow_of, jacobian, next_states, rates
-from runtime.program import Axis, Constant, Kind, Method, Program, Role, Term
+from runtime.program import Constant, Kind, Program, Role, Term
+from runtime.table import Axis, Method
 from tests.runtime.behaviors import (
     NOWHERE,
     ONE,

@@ -19,10 +19,11 @@ from runtime.code import Code
 from runtime.flow import flow_of, in_one_mode
 from runtime.integrators import adaptive
 from runtime.kernels.tape import LANES
-from runtime.program import Axis, Method, Program
+from runtime.program import Program
 from runtime.recording import recorded
 from runtime.rollout import Ending
 from runtime.simulate import FixedSteps, simulate
+from runtime.table import Axis, Method
 from tests.runtime.behaviors import (
     NOWHERE,
     formula_program,

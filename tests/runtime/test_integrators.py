@@ -13,8 +13,9 @@ from runtime.arrays import Array
 from runtime.flow import Flow, Source, flow_of
 from runtime.integrators import Trajectories, adaptive, fixed_steps, rk4
 from runtime.kernels.tape import LANES
-from runtime.program import Kind, Method, Program, Role
+from runtime.program import Kind, Program, Role
 from runtime.rollout import Ending
+from runtime.table import Method
 from tests.runtime.behaviors import (
     control,
     formula_program,

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from runtime.arrays import Array
 from runtime.interpolation import grid_of, lookup, lookup_into, lookup_jacobian, tabulate
 from runtime.kernels.interpolate import block_address, lookup_lanes, lookup_points
-from runtime.program import Axis, Method, Table
+from runtime.table import Axis, Method, Table
 
 COUNTS = (6, 5, 7, 4, 5)
 

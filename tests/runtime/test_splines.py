@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline, NdBSpline, RegularGridInterpolator, m
 from runtime import splines
 from runtime.arrays import Array
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
-from runtime.program import Axis, Method
+from runtime.table import Axis, Method
 
 
 def random_walk(n: int, m: int) -> Array:

@@ -12,7 +12,7 @@ from runtime.arrays import Array
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
 from runtime.intervals import Interval, exactly
 from runtime.jets import SURE, Jet
-from runtime.program import Axis, Method, Table
+from runtime.table import Axis, Method, Table
 from runtime.table_bounds import column_jets, columns_of, combined, held_at
 
 METHODS = [Method.LINEAR, Method.CUBIC]

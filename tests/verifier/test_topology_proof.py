@@ -14,7 +14,8 @@ from runtime.code import Code
 from runtime.flow import Source
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
 from runtime.intervals import Interval
-from runtime.program import Axis, Field, Kind, Method, Program, Term
+from runtime.program import Field, Kind, Program, Term
+from runtime.table import Axis, Method
 from tests.verifier.topology_scenes import (
     behavior,
     control,

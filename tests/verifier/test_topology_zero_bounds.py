@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from runtime.code import Code
 from runtime.enclosure import drifts, enclosure_of
 from runtime.interpolation import tabulate
-from runtime.program import Axis, Field, Method, Program, Term
+from runtime.program import Field, Program, Term
+from runtime.table import Axis, Method
 from tests.verifier.topology_scenes import behavior, control, state
 from verifier.topology.claims.zero_bounds import zero_within
 from verifier.topology.slices import cut

@@ -9,12 +9,10 @@ from runtime.code import Code
 from runtime.flow import flow_of, next_states, rates
 from runtime.interpolation import tabulate
 from runtime.program import (
-    Axis,
     Control,
     ErrorBound,
     Field,
     Kind,
-    Method,
     Origin,
     Program,
     Role,
@@ -22,6 +20,7 @@ from runtime.program import (
     Term,
     Unit,
 )
+from runtime.table import Axis, Method
 
 ONE = Unit("1", 1.0)
 METRE = Unit("m", 1.0)

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from runtime.interpolation import tabulate
-from runtime.program import Axis, Kind, Method, Program, Role, Term
+from runtime.program import Kind, Program, Role, Term
+from runtime.table import Axis, Method
 from spec_schema.diagnostics import SpecError
 from verifier.fidelity.verify import verify
 from verifier.report.report import Report, Standing, Verdict
