@@ -1,5 +1,6 @@
 """A recording judged against its spec, wherever the spec is found."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias, final
@@ -10,7 +11,7 @@ from spec_schema.diagnostics import SpecError
 from spec_schema.load import load
 from specc.loading import load_program
 from specc.spec_finding import Found, find_spec
-from verifier.fidelity.verify import verify as judge
+from verifier.examination import Examination, examine
 from verifier.report.report import Report
 from verifier.traces.read import read_trace
 
@@ -20,16 +21,30 @@ Clock: TypeAlias = Literal["auto", "sensor", "log"]
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Verification:
-    """A verdict, and the spec that it was given under."""
+    """An examination, and the spec that it was made under."""
 
     found: Found
-    report: Report
+    examination: Examination
+
+    @property
+    def report(self) -> Report:
+        """The verdict and its evidence."""
+        return self.examination.report
 
 
 def verify(
-    trace: Path | str, spec: Path | str | Program | None = None, clock: Clock = "auto"
+    trace: Path | str,
+    spec: Path | str | Program | None = None,
+    clock: Clock = "auto",
+    *,
+    only_verdict: bool = False,
+    progress: Callable[[str], None] | None = None,
 ) -> Verification:
     """Judge a recording against its spec: the one given, else attached, else the project's.
+
+    Args:
+        only_verdict: leave out what explains the verdict.
+        progress: is told what is done next, as a phrase.
 
     Raises:
         SpecError: the spec or the log can't be used.
@@ -39,7 +54,15 @@ def verify(
         found = Found(spec, f"{spec.name}, as given")
     else:
         found = find_spec(trace, None if spec is None else Path(spec), _without_running)
-    return Verification(found, judge(found.program, read_trace(trace, found.program, clock)))
+    tell = progress or _in_silence
+    tell("reading")
+    read = read_trace(trace, found.program, clock)
+    made = examine(found.program, read, only_verdict=only_verdict, progress=tell)
+    return Verification(found, made)
+
+
+def _in_silence(_phase: str) -> None:
+    """Nobody watches."""
 
 
 def _without_running(path: Path) -> Program:
