@@ -12,7 +12,7 @@ from runtime.program import Program
 from spec_schema.load import load
 from spec_schema.project import ProjectSpec
 from specc.faults import fault
-from verifier.traces.open_log import attached_program
+from verifier.traces.files.open_log import attached_program
 
 PROJECT = "specc.yaml"
 

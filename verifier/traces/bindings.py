@@ -8,8 +8,14 @@ from runtime.program import Binding, Control, Program, State
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from verifier.traces.faults import binding_diagnostic, nearest_help, origin_span
-from verifier.traces.log import LogFile, MessageLog, Sheet
-from verifier.traces.paths import MessagePath, PathError, column_text, parse_column, parse_path
+from verifier.traces.files.log import LogFile, MessageLog, Sheet
+from verifier.traces.messages.paths import (
+    MessagePath,
+    PathError,
+    column_text,
+    parse_column,
+    parse_path,
+)
 
 
 @final

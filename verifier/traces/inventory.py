@@ -8,12 +8,12 @@ import numpy as np
 
 from runtime.arrays import Integers
 from verifier.traces.clock import stamp_fault
-from verifier.traces.columns import Column
-from verifier.traces.fields import FieldError, shape
-from verifier.traces.leaves import list_fields, list_quaternions
-from verifier.traces.log import MessageLog, Messages, Sheet, Wanted
-from verifier.traces.open_log import attached_program, open_log
-from verifier.traces.paths import DERIVED, MessagePath, column_text, path_text
+from verifier.traces.files.log import MessageLog, Messages, Sheet, Wanted
+from verifier.traces.files.open_log import attached_program, open_log
+from verifier.traces.messages.columns import Column
+from verifier.traces.messages.fields import FieldError, shape
+from verifier.traces.messages.leaves import list_fields, list_quaternions
+from verifier.traces.messages.paths import DERIVED, MessagePath, column_text, path_text
 from verifier.traces.samples import Samples, sample_sheet, sample_topic
 from verifier.traces.trace import Loss
 

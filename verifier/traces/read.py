@@ -14,10 +14,10 @@ from verifier.traces.bindings import Bound, resolve, texts_of, wanted_topics
 from verifier.traces.cleaning import Ordering, order
 from verifier.traces.clock import Clock, choose_clocks, stamp_fault
 from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fault
-from verifier.traces.fields import FieldError
-from verifier.traces.log import LogFile, MessageLog, Sheet, Wanted
-from verifier.traces.open_log import open_log
-from verifier.traces.paths import MessagePath
+from verifier.traces.files.log import LogFile, MessageLog, Sheet, Wanted
+from verifier.traces.files.open_log import open_log
+from verifier.traces.messages.fields import FieldError
+from verifier.traces.messages.paths import MessagePath
 from verifier.traces.samples import Samples, check_topic, sample_sheet, sample_topic
 from verifier.traces.trace import Loss, Series, Trace
 from verifier.traces.values import Meaning, Measured, NotNumbersError, measured

@@ -7,13 +7,13 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Integers
-from verifier.traces import json_messages, wire
-from verifier.traces.columns import Column, Decoded
-from verifier.traces.definitions import Struct
-from verifier.traces.fields import FieldError, check, shape, stamp_leaves
-from verifier.traces.log import LATEST, Messages, Sheet
-from verifier.traces.paths import MessagePath, Steps
-from verifier.traces.quaternions import angle
+from verifier.traces.files.log import LATEST, Messages, Sheet
+from verifier.traces.messages import json_messages, wire
+from verifier.traces.messages.columns import Column, Decoded
+from verifier.traces.messages.definitions import Struct
+from verifier.traces.messages.fields import FieldError, check, shape, stamp_leaves
+from verifier.traces.messages.paths import MessagePath, Steps
+from verifier.traces.messages.quaternions import angle
 from verifier.traces.trace import Loss
 
 

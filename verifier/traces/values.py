@@ -8,8 +8,8 @@ import numpy as np
 
 from runtime.arrays import Array
 from runtime.program import Binding
-from verifier.traces.columns import Column
 from verifier.traces.faults import nearest_help
+from verifier.traces.messages.columns import Column
 from verifier.traces.trace import Loss
 
 MOST_NOTES = 20

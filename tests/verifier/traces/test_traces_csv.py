@@ -7,7 +7,7 @@ import pytest
 
 from runtime.program import Kind
 from spec_schema.diagnostics import SpecError
-from verifier.traces.csv_time import find_clock
+from verifier.traces.files.csv_time import find_clock
 from verifier.traces.read import read_trace
 
 ROWS = "".join(f"{0.1 * i:.1f},{i},{'go' if i % 2 else 'stop'}\n" for i in range(20))

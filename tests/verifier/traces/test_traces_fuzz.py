@@ -10,8 +10,8 @@ import pytest
 from mcap.writer import CompressionType
 
 from spec_schema.diagnostics import SpecError
+from verifier.traces.files.open_log import attached_program
 from verifier.traces.inventory import inspect
-from verifier.traces.open_log import attached_program
 from verifier.traces.trace import Trace
 
 ROUNDS = 60

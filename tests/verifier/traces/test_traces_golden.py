@@ -63,7 +63,7 @@ def test_a_log_that_cannot_be_used_is_explained(
 
 
 def test_every_code_has_a_bad_log() -> None:
-    sources = (ROOT / "verifier" / "traces").glob("*.py")
+    sources = (ROOT / "verifier" / "traces").rglob("*.py")
     raised = {code for path in sources for code in re.findall(r'"(V3\d\d)"', path.read_text())}
     shown = {
         code

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from spec_schema.diagnostics import SpecError
-from verifier.traces.definitions import definition
 from verifier.traces.inventory import inspect
-from verifier.traces.leaves import list_fields, list_quaternions
-from verifier.traces.paths import parse_path
+from verifier.traces.messages.definitions import definition
+from verifier.traces.messages.leaves import list_fields, list_quaternions
+from verifier.traces.messages.paths import parse_path
 
 
 def test_short_lists_are_shown_whole_and_long_ones_by_their_first_item() -> None:

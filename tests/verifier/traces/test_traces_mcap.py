@@ -10,7 +10,7 @@ import pytest
 from mcap.writer import CompressionType
 
 from spec_schema.diagnostics import SpecError
-from verifier.traces.open_log import attached_program
+from verifier.traces.files.open_log import attached_program
 from verifier.traces.trace import Trace
 
 COUNT = 200

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verifier.traces.paths import (
+from verifier.traces.messages.paths import (
     PathError,
     column_text,
     parse_column,

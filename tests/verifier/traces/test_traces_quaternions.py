@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from verifier.traces.quaternions import angle
+from verifier.traces.messages.quaternions import angle
 
 HALF = math.sqrt(0.5)
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from verifier.traces.definitions import (
+from verifier.traces.messages.definitions import (
     DefinitionError,
     Many,
     Node,
@@ -20,9 +20,9 @@ from verifier.traces.definitions import (
     Text,
     definition,
 )
-from verifier.traces.json_messages import decode as decode_json
-from verifier.traces.paths import Steps
-from verifier.traces.wire import decode
+from verifier.traces.messages.json_messages import decode as decode_json
+from verifier.traces.messages.paths import Steps
+from verifier.traces.messages.wire import decode
 
 NUMBERS = {
     "bool": np.bool_,

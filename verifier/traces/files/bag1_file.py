@@ -13,8 +13,8 @@ from typing import TypeAlias
 
 import lz4.frame
 
-from verifier.traces.log import Channel, MessageLog, Wanted
-from verifier.traces.streams import Gathering
+from verifier.traces.files.log import Channel, MessageLog, Wanted
+from verifier.traces.files.streams import Gathering
 
 MAGIC = b"#ROSBAG V2.0\n"
 LARGEST_CHUNK = 1 << 31

@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from runtime.arrays import Array, Booleans, Integers
-from verifier.traces.columns import Column, Decoded
-from verifier.traces.definitions import Struct
-from verifier.traces.layout import Layout, Leaves, Slot, WireError, find_layout
-from verifier.traces.paths import Steps
+from verifier.traces.messages.columns import Column, Decoded
+from verifier.traces.messages.definitions import Struct
+from verifier.traces.messages.layout import Layout, Leaves, Slot, WireError, find_layout
+from verifier.traces.messages.paths import Steps
 
 SLAB_BYTES = 1 << 25
 # Beyond this many layouts of one size, looking for others alike costs more than it saves.

@@ -5,7 +5,7 @@ from typing import Generic, TypeVar, final
 
 import numpy as np
 
-from verifier.traces.log import LATEST, Channel, MessageLog, Messages, Wanted
+from verifier.traces.files.log import LATEST, Channel, MessageLog, Messages, Wanted
 from verifier.traces.trace import Loss
 
 UNBOUNDED = 1 << 62

@@ -19,8 +19,8 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, Schema, Statistics
 
-from verifier.traces import log
-from verifier.traces.streams import Gathering
+from verifier.traces.files import log
+from verifier.traces.files.streams import Gathering
 
 MAGIC = b"\x89MCAP0\r\n"
 LARGEST_CHUNK = 1 << 31

@@ -7,8 +7,8 @@ from rosbags.interfaces import Connection, MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
-from verifier.traces.log import Channel, MessageLog, Wanted
-from verifier.traces.streams import Gathering
+from verifier.traces.files.log import Channel, MessageLog, Wanted
+from verifier.traces.files.streams import Gathering
 
 _SCHEMA_ENCODINGS = {
     MessageDefinitionFormat.MSG: "ros2msg",

@@ -6,8 +6,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from verifier.traces.columns import Cell, Decoded, column
-from verifier.traces.paths import Steps
+from verifier.traces.messages.columns import Cell, Decoded, column
+from verifier.traces.messages.paths import Steps
 
 Json: TypeAlias = bool | int | float | str | list["Json"] | dict[str, "Json"] | None
 

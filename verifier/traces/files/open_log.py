@@ -5,12 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from spec_schema.diagnostics import SpecError
-from verifier.traces.bag1_file import is_bag1, read_bag1
-from verifier.traces.bag2_file import is_sqlite, read_bag2
-from verifier.traces.csv_file import is_csv, read_csv
 from verifier.traces.faults import file_fault
-from verifier.traces.log import LogFile, MessageLog, Messages, Wanted
-from verifier.traces.mcap_file import find_attachment, is_mcap, read_mcap
+from verifier.traces.files.bag1_file import is_bag1, read_bag1
+from verifier.traces.files.bag2_file import is_sqlite, read_bag2
+from verifier.traces.files.csv_file import is_csv, read_csv
+from verifier.traces.files.log import LogFile, MessageLog, Messages, Wanted
+from verifier.traces.files.mcap_file import find_attachment, is_mcap, read_mcap
 from verifier.traces.trace import Loss
 
 HEAD_BYTES = 1 << 16

@@ -9,8 +9,8 @@ import struct
 from dataclasses import dataclass
 from typing import TypeAlias, assert_never, final
 
-from verifier.traces.definitions import Many, Node, Number, Struct, Text
-from verifier.traces.paths import Steps
+from verifier.traces.messages.definitions import Many, Node, Number, Struct, Text
+from verifier.traces.messages.paths import Steps
 
 DEEPEST = 64
 

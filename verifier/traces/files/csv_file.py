@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import final
 
 from spec_schema.diagnostics import SpecError
-from verifier.traces.csv_time import Clocked, find_clock
 from verifier.traces.faults import file_fault, nearest_help
-from verifier.traces.log import Sheet
+from verifier.traces.files.csv_time import Clocked, find_clock
+from verifier.traces.files.log import Sheet
 from verifier.traces.trace import Loss
 
 _DELIMITERS = ",;\t"

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from verifier.traces.definitions import Many, Node, Struct
-from verifier.traces.fields import is_quaternion, is_stamp
-from verifier.traces.paths import Steps
+from verifier.traces.messages.definitions import Many, Node, Struct
+from verifier.traces.messages.fields import is_quaternion, is_stamp
+from verifier.traces.messages.paths import Steps
 
 MOST_FIELDS = 400
 MOST_ITEMS = 8

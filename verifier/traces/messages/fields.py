@@ -7,7 +7,9 @@ same form as a definition.
 from dataclasses import dataclass
 from typing import final
 
-from verifier.traces.definitions import (
+from verifier.traces.faults import nearest_help
+from verifier.traces.files.log import Channel, Messages
+from verifier.traces.messages.definitions import (
     DefinitionError,
     Many,
     Node,
@@ -16,10 +18,8 @@ from verifier.traces.definitions import (
     Text,
     definition,
 )
-from verifier.traces.faults import nearest_help
-from verifier.traces.json_messages import Json, parse
-from verifier.traces.log import Channel, Messages
-from verifier.traces.paths import DERIVED, MessagePath, Steps, steps_text
+from verifier.traces.messages.json_messages import Json, parse
+from verifier.traces.messages.paths import DERIVED, MessagePath, Steps, steps_text
 
 EXAMPLES = 20
 _STAMPS: tuple[Steps, ...] = (("header", "stamp"), ("stamp",), ("timestamp",))

@@ -9,7 +9,7 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Booleans, Integers
-from verifier.traces.log import LATEST
+from verifier.traces.files.log import LATEST
 
 _NANOSECONDS = {
     "ns": 1,
