@@ -46,19 +46,29 @@ def verify(program: Program, trace: Trace) -> Report:
     Raises:
         SpecError: the spec does not say what it would be verified against (V351).
     """
+    report, _study = judged(program, trace)
+    return report
+
+
+def judged(program: Program, trace: Trace) -> tuple[Report, Study | None]:
+    """The report, and the study that it rests on; None where nothing can be compared.
+
+    Raises:
+        SpecError: the spec does not say what it would be verified against (V351).
+    """
     fidelity = _fidelity(program)
     needs = needs_of(program, trace)
     absent = not_told(needs)
     if absent:
-        return _unjudged(program, trace, fidelity, None, absent)
+        return _unjudged(program, trace, fidelity, None, absent), None
     segments = segments_of(program, needs, fidelity.horizon)
     if len(segments.spans) == 0:
         reason = too_short(needs, segments, fidelity.horizon)
-        return _unjudged(program, trace, fidelity, segments, reason)
+        return _unjudged(program, trace, fidelity, segments, reason), None
     study = study_of(flow_of(program), fidelity, needs, segments, np.random.default_rng(SEED))
     if isinstance(study, str):
-        return _unjudged(program, trace, fidelity, segments, study)
-    return _judged(program, trace, fidelity, study)
+        return _unjudged(program, trace, fidelity, segments, study), None
+    return _judged(program, trace, fidelity, study), study
 
 
 def _fidelity(program: Program) -> Fidelity:
