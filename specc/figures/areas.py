@@ -8,7 +8,6 @@ from typing import Final
 import numpy as np
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Patch, Rectangle
-from scipy.ndimage import gaussian_filter, zoom
 
 from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry
@@ -22,6 +21,9 @@ FINER: Final = 4
 
 BLUR: Final = 0.8
 """The width of the blur that smooths the edge, in cells."""
+
+REACH: Final = 3
+"""How far the blur reaches, in cells: what lies farther weighs next to nothing."""
 
 SMALLEST: Final = 0.09
 """An undecided box is drawn at least this large, in inches."""
@@ -176,16 +178,24 @@ def _ends(state: AxisRange) -> tuple[float, float]:
 
 def _smoothed(labels: Integers, present: list[int]) -> Integers:
     """For each finer cell the index of the label that surrounds it most."""
-    weights = [
-        zoom(_blurred(labels == label), FINER, order=1, mode="nearest", grid_mode=True)
-        for label in present
-    ]
-    return np.asarray(np.argmax(weights, axis=0))
+    down, across = (_finer(count) for count in labels.shape)
+    return np.asarray(np.argmax([down @ (labels == k) @ across.T for k in present], axis=0))
 
 
-def _blurred(inside: Booleans) -> Array:
-    """Whether a place is inside, as a share: takes the stairs off the edge of a basin."""
-    return np.asarray(gaussian_filter(inside.astype(np.float64), BLUR, mode="nearest"))
+def _finer(count: int) -> Array:
+    """What each of `count` cells in a row gives each finer one: (count * FINER, count).
+
+    A blur takes the stairs off the edge of a basin; between the centres of cells it is linear.
+    The outermost cells go on beyond the end. Of numpy alone: scipy.ndimage takes 0.1 s to load.
+    """
+    cells = np.arange(count)
+    reach = np.arange(-REACH, REACH + 1)
+    bell = np.exp(-0.5 * (reach / BLUR) ** 2)
+    blur = np.zeros((count, count))
+    for step, share in zip(reach, bell / bell.sum(), strict=True):
+        np.add.at(blur, (cells, np.clip(cells + step, 0, count - 1)), share)
+    centres = (np.arange(count * FINER) + 0.5) / FINER - 0.5
+    return np.stack([np.interp(centres, cells, each) for each in blur.T], axis=-1)
 
 
 def _ground(panel: Panel, label: int) -> tuple[float, float, float, float]:
