@@ -11,7 +11,8 @@ from spec_schema.diagnostics import SpecError
 from spec_schema.load import load
 from specc.loading import load_program
 from specc.spec_finding import Found, find_spec
-from verifier.examination import Examination, examine
+from verifier.examination import examine
+from verifier.report.examination import Examination
 from verifier.report.report import Report
 from verifier.traces.read import read_trace
 

@@ -5,21 +5,12 @@ other sections explain it, say how far it reaches, and never make it better.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import final
 
 from runtime.program import Program
-from verifier.fidelity.verify import verify
-from verifier.report.report import Report
+from verifier.fidelity.verify import judged
+from verifier.report.examination import Examination
+from verifier.scores.scores import scores_of
 from verifier.traces.trace import Trace
-
-
-@final
-@dataclass(frozen=True, eq=False, slots=True)
-class Examination:
-    """The report with its sections; one that was not computed, or has nothing to say, is None."""
-
-    report: Report
 
 
 def examine(
@@ -40,11 +31,19 @@ def examine(
     """
     tell = progress or _in_silence
     tell("judging")
-    report = verify(program, trace)
-    if only_verdict:
-        return Examination(report)
-    # The sections are filled in here, each by its own room.
-    return Examination(report)
+    report, study = judged(program, trace)
+    origins = origins_of(program)
+    if only_verdict or study is None:
+        return Examination(report, origins=origins)
+    tell("scoring")
+    return Examination(report, scores=scores_of(study, report), origins=origins)
+
+
+def origins_of(program: Program) -> dict[str, str]:
+    """Where in the spec each state and control stands, and what is demanded of the robot."""
+    parts = {part.name: part.origin for part in (*program.states, *program.controls)}
+    fidelity = program.field.origin if program.fidelity is None else program.fidelity.origin
+    return parts | {"fidelity": fidelity}
 
 
 def _in_silence(_phase: str) -> None:

@@ -1,0 +1,1 @@
+"""Scores of similarity, printed beside the verdict for comparison only."""
