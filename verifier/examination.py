@@ -7,6 +7,7 @@ other sections explain it, say how far it reaches, and never make it better.
 from collections.abc import Callable
 
 from runtime.program import Program
+from verifier.fidelity.stretches.needs import parts_of
 from verifier.fidelity.verify import judged
 from verifier.report.examination import Examination
 from verifier.scores.scores import scores_of
@@ -41,7 +42,7 @@ def examine(
 
 def origins_of(program: Program) -> dict[str, str]:
     """Where in the spec each state and control stands, and what is demanded of the robot."""
-    parts = {part.name: part.origin for part in (*program.states, *program.controls)}
+    parts = {name: part.origin for name, part in parts_of(program).items()}
     fidelity = program.field.origin if program.fidelity is None else program.fidelity.origin
     return parts | {"fidelity": fidelity}
 

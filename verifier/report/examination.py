@@ -3,8 +3,12 @@
 from dataclasses import dataclass, field
 from typing import final
 
+from verifier.report.diagnosis import Diagnosis
+from verifier.report.features import Features
+from verifier.report.limits import Limits
 from verifier.report.report import Report
 from verifier.report.scores import Scores
+from verifier.report.switching import Switching
 
 
 @final
@@ -12,10 +16,17 @@ from verifier.report.scores import Scores
 class Examination:
     """What was found in one trace; a section that was not computed is None.
 
+    switching: the changes of mode. diagnosis: why the robot departs. limits: what this trace
+    can't tell, and what it would have caught. features: the robot's topology beside the spec's.
+    scores: those of similarity, for comparison only.
     origins: where in the spec, `file:line:column`, each thing stands that a finding may be about:
     its name for a state or control, `fidelity` for what is demanded of the robot.
     """
 
     report: Report
+    switching: Switching | None = None
+    diagnosis: Diagnosis | None = None
+    limits: Limits | None = None
+    features: Features | None = None
     scores: Scores | None = None
     origins: dict[str, str] = field(default_factory=dict)

@@ -78,13 +78,13 @@ def _textbook(t: Array, c: Array, band: int) -> float:
 
 
 def test_a_robot_that_is_plainly_wrong_still_scores_well() -> None:
-    trace = van_der_pol_drive(seed=4, seconds=60.0, noise=0.01, mu=1.15)
+    trace = van_der_pol_drive(seed=4, seconds=60.0, noise=0.01, mu=1.25)
 
     examination = examine(van_der_pol(), trace)
 
     assert examination.report.verdict is Verdict.FAIL
     assert examination.scores is not None
-    assert all(each.r_squared > 0.97 for each in examination.scores.variables)
+    assert all(each.r_squared > 0.9 for each in examination.scores.variables)
     assert any("and yet scores" in s for s in examination.scores.sentences)
 
 
