@@ -1,0 +1,202 @@
+"""The windows on which explanations are tried: longer than those of the verdict, side by side.
+
+Every sample lies in one window, and a window's start is a free nuisance. Longer windows tell more
+(fewer nuisances), as long as the field does not blow small errors up; at least a dozen of them are
+wanted, since what they say apart from one another is the measure of doubt.
+
+W: windows; D: predicted states; S: integration steps; m: samples of a state in a window.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, final
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans, Integers
+from runtime.flow import Flow
+from runtime.program import Program
+from verifier.diagnosis.altered import Altered, Seen
+from verifier.diagnosis.courses import Course
+from verifier.diagnosis.loosened import loosened_flow
+from verifier.fidelity.shooting.plan import Plan
+from verifier.fidelity.shooting.samples import Samples, edges, measured_states
+from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.stretches.needs import Needs
+
+LONG: Final = 2.0
+"""Windows of so many horizons are wanted."""
+WANTED: Final = 12
+"""And at least so many of them, but none is shorter than half a horizon."""
+SHORT: Final = 0.5
+MOST: Final = 64
+"""More windows are thinned out, in even spacing."""
+MOST_SAMPLES: Final = 80
+"""More samples of a state in a window are thinned out."""
+STEPS: Final = 20
+"""Integration steps to a horizon, at least."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Observed:
+    """One predicted state as measured: values (W, m) at `times`, real where `used`.
+
+    at: which knot of its window each is. floor: the noise that its sensor has at least.
+    """
+
+    name: str
+    column: int
+    turn: float
+    width: float
+    low: float
+    high: float
+    floor: float
+    times: Array
+    values: Array
+    at: Integers
+    used: Booleans
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """All that trying an explanation needs.
+
+    times: (W, S + 1) integration knots; a short window repeats its last one. start: (W, n).
+    plain: the setting in which all is as the spec and the log say.
+    """
+
+    program: Program
+    flow: Flow
+    needs: Needs
+    times: Array
+    start: Array
+    observed: tuple[Observed, ...]
+    plain: Altered
+    horizon: float
+
+    @property
+    def windows(self) -> int:
+        """How many there are."""
+        return len(self.times)
+
+
+def scene_of(program: Program, study: Study) -> Scene:
+    """The windows of a study, for its program loosened."""
+    plan, horizon = study.plan, study.plan.windows.horizon
+    edges_of_windows = _windows(study.segments.spans, horizon)
+    step = _step(plan)
+    rows = [_chosen(plan, low, high) for low, high in edges_of_windows]
+    rows = [row for row in rows if all(len(each) > 1 for each in row)]
+    knots = [_knots(plan, row, step, is_map=program.field.is_map) for row in rows]
+    times = _padded(knots)
+    observed = tuple(
+        _observed(each, [row[j] for row in rows], times, study.noise[j].sigma)
+        for j, each in enumerate(plan.samples)
+    )
+    return Scene(
+        program=program,
+        flow=loosened_flow(program),
+        needs=plan.needs,
+        times=times,
+        start=_starts(plan, times[:, 0]) if rows else np.empty((0, plan.model.states)),
+        observed=observed,
+        plain=_plain(plan, observed),
+        horizon=horizon,
+    )
+
+
+def _step(plan: Plan) -> float:
+    """The longest step of the grid that was found accurate enough, gaps apart."""
+    most = plan.windows.horizon / STEPS
+    steps = np.diff(plan.model.grid.times)
+    return float(np.max(steps[steps <= most * (1.0 + 1e-6)], initial=most / 16.0))
+
+
+def _windows(spans: Array, horizon: float) -> list[tuple[float, float]]:
+    """Windows of even length in every stretch, thinned to the most that are allowed."""
+    total = float(np.sum(spans[:, 1] - spans[:, 0]))
+    wanted = min(LONG * horizon, max(SHORT * horizon, total / WANTED))
+    found: list[tuple[float, float]] = []
+    for low, high in spans:
+        count = max(1, int((high - low) / wanted + 1e-6))
+        inner = np.linspace(low, high, count + 1)
+        found += [(float(a), float(b)) for a, b in pairwise(inner)]
+    keep = np.unique(np.linspace(0, len(found) - 1, min(MOST, len(found))).astype(np.int64))
+    return [found[i] for i in keep]
+
+
+def _chosen(plan: Plan, low: float, high: float) -> list[Integers]:
+    """Per predicted state, the indices of its samples in a window; the end belongs to the next."""
+    chosen = []
+    for each in plan.samples:
+        first, stop = np.searchsorted(each.times, [low - 1e-9, high - 1e-9])
+        stride = -(-(stop - first) // MOST_SAMPLES)
+        chosen.append(np.arange(first, stop, max(stride, 1)))
+    return chosen
+
+
+def _knots(plan: Plan, row: list[Integers], step: float, *, is_map: bool) -> Array:
+    """Integration knots of one window: its samples, no further apart than `step`."""
+    pairs = list(zip(plan.samples, row, strict=True))
+    if is_map:
+        knots = np.concatenate([each.knots[index] for each, index in pairs])
+        return np.asarray(plan.model.grid.times[int(np.min(knots)) : int(np.max(knots)) + 1])
+    times = np.unique(np.concatenate([each.times[index] for each, index in pairs]))
+    pieces = np.maximum(1, np.ceil(np.diff(times) / step - 1e-9)).astype(np.int64)
+    parts = [
+        np.linspace(a, b, n, endpoint=False)
+        for a, b, n in zip(times[:-1], times[1:], pieces, strict=True)
+    ]
+    return np.concatenate([*parts, times[-1:]])
+
+
+def _padded(rows: list[Array]) -> Array:
+    longest = max((len(row) for row in rows), default=1)
+    return np.array([np.pad(r, (0, longest - len(r)), "edge") for r in rows]).reshape(-1, longest)
+
+
+def _observed(samples: Samples, rows: list[Integers], times: Array, floor: float) -> Observed:
+    most = max((len(row) for row in rows), default=0)
+    index = np.array([np.pad(r, (0, most - len(r)), "edge") for r in rows], dtype=np.int64)
+    index = index.reshape(-1, most)
+    used = np.array([np.arange(most) < len(row) for row in rows], dtype=bool).reshape(-1, most)
+    at = [np.searchsorted(t, samples.times[i] - 1e-9) for t, i in zip(times, index, strict=True)]
+    state = samples.state
+    low, high = edges(samples)
+    return Observed(
+        state.name,
+        samples.column,
+        samples.turn,
+        state.high - state.low,
+        low,
+        high,
+        floor,
+        samples.times[index],
+        samples.values[index],
+        np.array(at, dtype=np.int64).reshape(-1, most),
+        used,
+    )
+
+
+def _starts(plan: Plan, times: Array) -> Array:
+    """What was measured at the first knots, by nearest samples: refined by every fit."""
+    knots = np.searchsorted(plan.model.grid.times, times)
+    return measured_states(
+        plan.model, plan.samples, np.minimum(knots, len(plan.model.grid.times) - 1)
+    )
+
+
+def _plain(plan: Plan, observed: tuple[Observed, ...]) -> Altered:
+    """Inputs as they were measured; those of a step map as they are at its ticks."""
+    courses = {}
+    for column, each in enumerate(plan.needs.inputs):
+        if each.series is not None and len(each.series.times) > 1:
+            clipped = np.clip(each.series.values, each.low, each.high)
+            courses[each.name] = Course(each.series.times, clipped)
+            if plan.model.flow.is_map:
+                grid = plan.model.grid
+                courses[each.name] = Course(grid.times, grid.inputs[:, column])
+    register = {each.name: each.value for each in plan.needs.inputs if each.series is None}
+    return Altered(register, courses, {each.name: Seen() for each in observed})
