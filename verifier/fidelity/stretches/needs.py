@@ -5,7 +5,7 @@ sensed-only states, discrete states) is an *input*: taken from the trace and hel
 sample (zero-order hold). What the field does not read is not needed.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import assert_never, final
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.code import Code
 from runtime.program import Control, Kind, Program, State
+from verifier.fidelity.stretches.changes import halved
 from verifier.traces.trace import Series, Trace
 
 
@@ -98,6 +99,11 @@ def names_read(program: Program) -> set[str]:
     return axes | _tokens((*(field.formula or ()), *coefficients, *coordinates))
 
 
+def mode_of(program: Program, needs: Needs) -> Input | None:
+    """The input that tells the mode; None where there are no modes."""
+    return next((each for each in needs.inputs if each.name == program.field.mode), None)
+
+
 def held(series: Series, times: Array) -> Array:
     """The latest value at each time: zero-order hold; before the first sample, the first."""
     at = np.searchsorted(series.times, times, side="right") - 1
@@ -127,9 +133,14 @@ def _inputs(program: Program, trace: Trace, predicted: set[int]) -> tuple[Input,
     offset = len(program.states)
     parts += [(offset + i, control) for i, control in enumerate(program.controls)]
     read = names_read(program) | _tokens(_condition(program))
-    return tuple(
-        _input(trace, part.name, column, part) for column, part in parts if part.name in read
-    )
+    found = (_input(trace, part.name, column, part) for column, part in parts if part.name in read)
+    return tuple(_with_changes_halved(each, program.field.mode) for each in found)
+
+
+def _with_changes_halved(given: Input, mode: str) -> Input:
+    if given.name != mode or given.series is None:
+        return given
+    return replace(given, series=halved(given.series))
 
 
 def _condition(program: Program) -> tuple[Code, ...]:

@@ -3,6 +3,9 @@
 A stretch is cut where a needed series has a gap (longer than five of its median periods and than
 half a second), where `judge_when` is false, where a variable is outside its domain, where the mode
 switches, since states may jump there, and where what is left is shorter than the horizon.
+
+A switch does not cut beside a stay that is too short for windows of its own: there windows go on
+through the switch, at the time at which the robot took it, with the jump that the spec gives it.
 """
 
 from dataclasses import dataclass
@@ -13,13 +16,16 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
-from verifier.fidelity.stretches.needs import Needs, held, parts_of, period_of
+from verifier.fidelity.stretches.changes import changes_in
+from verifier.fidelity.stretches.needs import Needs, held, mode_of, parts_of, period_of
 from verifier.fidelity.stretches.spans import contains, intersect, length, spans_of, without
 from verifier.report.report import Exclusion
 from verifier.traces.trace import Series
 
 GAP_PERIODS = 5.0
 GAP_SECONDS = 0.5
+STAY = 1.5
+"""A stay in a mode that is shorter than so many horizons is too short for windows of its own."""
 EDGE = 1e-9
 """How far beyond its domain, as a share of it, a value may be by rounding."""
 
@@ -39,7 +45,8 @@ def segments_of(program: Program, needs: Needs, horizon: float) -> Segments:
     base = needs.series[needs.base].times
     left = spans_of([(float(base[0]), float(base[-1]))])
     exclusions = []
-    for cause, allowed in _causes(program, needs, left):
+    switches = _switches(program, needs, left, horizon)
+    for cause, allowed in [*_causes(program, needs, left), *switches]:
         kept = intersect(left, allowed)
         exclusions += _exclusion(cause, left, kept, base)
         left = kept
@@ -47,6 +54,15 @@ def segments_of(program: Program, needs: Needs, horizon: float) -> Segments:
     cause = f"shorter than the horizon of {horizon:g} s"
     exclusions += _exclusion(cause, left, long_enough, base)
     return Segments(long_enough, tuple(exclusions), (float(base[0]), float(base[-1])))
+
+
+def spans_between_exclusions(program: Program, needs: Needs) -> Array:
+    """The stretches (k, 2) of any length that may be judged, with switches of the mode in them."""
+    base = needs.series[needs.base].times
+    left = spans_of([(float(base[0]), float(base[-1]))])
+    for _, allowed in _causes(program, needs, left):
+        left = intersect(left, allowed)
+    return left
 
 
 def _causes(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
@@ -60,7 +76,7 @@ def _causes(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Arr
     ]
     judged = [("judge_when is false", _judged(program, needs, whole))]
     domains = _domains(program, needs, whole)
-    return [*covered, *judged, *domains, *_switches(program, needs, whole)]
+    return [*covered, *judged, *domains]
 
 
 def _exclusion(cause: str, before: Array, after: Array, base: Array) -> list[Exclusion]:
@@ -83,16 +99,26 @@ def _covered(series: Series, hold: float) -> list[tuple[str, Array]]:
     ]
 
 
-def _switches(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
-    """The instants at which the mode changes, each with the sample period before it."""
-    mode = program.field.mode
-    found = []
-    for each in needs.inputs:
-        if each.name == mode and each.series is not None:
-            changes = each.series.times[1:][np.diff(each.series.values) != 0.0]
-            before = changes - period_of(needs.series[needs.base].times)
-            found.append((f"{mode} changes", without(whole, np.column_stack([before, changes]))))
-    return found
+def _switches(
+    program: Program, needs: Needs, whole: Array, horizon: float
+) -> list[tuple[str, Array]]:
+    """The switches that cut, each with the time in which it may have happened.
+
+    That is at least the sample period of the time base before it.
+    """
+    mode = mode_of(program, needs)
+    changes = changes_in(None if mode is None else mode.series)
+    if len(changes) == 0:
+        return []
+    ends = np.concatenate([[whole[0, 0]], changes.times, [whole[-1, 1]]])
+    is_short = np.diff(ends) < STAY * horizon
+    ways = {(guard.mode, guard.target) for guard in program.field.guards}
+    declared = [way in ways for way in zip(changes.left, changes.entered, strict=True)]
+    cuts = ~((is_short[:-1] | is_short[1:]) & np.array(declared))
+    period = period_of(needs.series[needs.base].times)
+    since = np.minimum(changes.since, changes.until - period)
+    holes = np.column_stack([since, changes.until])[cuts]
+    return [(f"{program.field.mode} changes", without(whole, holes))]
 
 
 def _judged(program: Program, needs: Needs, whole: Array) -> Array:

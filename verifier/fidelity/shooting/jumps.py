@@ -1,0 +1,72 @@
+"""Predictions through a switch of the mode: the time is the robot's, the jump is the spec's.
+
+The mode is an input, so the model changes its mode when the robot did; what the guard resets, jumps
+there as the spec says. A guard that the robot crossed early or late is thus no error of a state:
+its time is judged by itself (`verifier.fidelity.switching`).
+
+K: predictions; n: states; G: knots of the grid.
+"""
+
+import numpy as np
+
+from runtime.arrays import Array, Integers
+from runtime.flow import Flow, registers
+from runtime.machine import evaluate
+from runtime.program import Guard, Program
+from verifier.fidelity.shooting.grid import Grid
+
+
+def switch_knots(flow: Flow, grid: Grid) -> Integers:
+    """The knots from which another mode holds than before; none without modes."""
+    column = mode_column(flow.program, grid)
+    if column < 0:
+        return np.zeros(0, np.int64)
+    return np.flatnonzero(np.diff(grid.inputs[:, column]) != 0.0) + 1
+
+
+def mode_column(program: Program, grid: Grid) -> int:
+    """Which of the grid's inputs is the mode; -1 without modes."""
+    names = [program.register[column] for column in grid.columns]
+    return names.index(program.field.mode) if program.field.mode in names else -1
+
+
+def jumped(flow: Flow, grid: Grid, states: Array, knots: Integers) -> Array:
+    """The states (K, n) after the switches at `knots` (K,), from those just before them.
+
+    Of several guards between the same two modes, that one counts which is nearest to opening, or
+    furthest open. Where the spec has none, nothing jumps.
+    """
+    column = mode_column(flow.program, grid)
+    left, entered = grid.inputs[knots - 1, column], grid.inputs[knots, column]
+    after = np.array(states)
+    for way in sorted(set(zip(left, entered, strict=True))):
+        here = (left == way[0]) & (entered == way[1])
+        guards = [g for g in flow.program.field.guards if (g.mode, g.target) == way]
+        if guards:
+            register = register_before(flow, grid, states[here], knots[here])
+            after[here] = reset_by(flow.program, guards, register)
+    return after
+
+
+def register_before(flow: Flow, grid: Grid, states: Array, knots: Integers) -> Array:
+    """The register (K, r) in which guards are read at `knots`: inputs as held until there."""
+    program = flow.program
+    defaults = flow.defaults[len(program.states) : len(program.states) + len(program.controls)]
+    register = registers(flow, states, defaults)
+    register[..., grid.columns] = grid.inputs[np.maximum(knots - 1, 0)]
+    return register
+
+
+def reset_by(program: Program, guards: list[Guard], register: Array) -> Array:
+    """The states (K, n) after the jump of one of `guards`, from the register (K, r) before it."""
+    values = evaluate([guard.condition for guard in guards], program.register, register)
+    chosen = np.argmax(values, axis=-1)
+    names = [state.name for state in program.states]
+    after = np.array(register[..., : len(names)])
+    for index, guard in enumerate(guards):
+        here = chosen == index
+        if guard.resets and np.any(here):
+            codes = [code for _, code in guard.resets]
+            columns = [names.index(name) for name, _ in guard.resets]
+            after[np.ix_(here, columns)] = evaluate(codes, program.register, register[here])
+    return after

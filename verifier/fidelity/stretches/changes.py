@@ -1,0 +1,85 @@
+"""When the measured mode changed, and within which time the log tells so.
+
+A mode that is logged with every sample shows a change at the first sample of the new mode: it
+happened after the sample before, and is taken to have happened half way between. A mode that is
+logged only when it changes has the stamp of the change itself.
+"""
+
+from dataclasses import dataclass, replace
+from typing import final
+
+import numpy as np
+
+from runtime.arrays import Array, Integers
+from verifier.traces.trace import Series
+
+EVENTS = 0.5
+"""A series in which more than this share of the samples differ from the one before is a log of
+changes."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Changes:
+    """K changes of mode.
+
+    times (K,): in the middle of the `doubt` (K,) seconds that the log leaves. left, entered (K,):
+    indices of modes.
+    """
+
+    times: Array
+    doubt: Array
+    left: Integers
+    entered: Integers
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self.times)
+
+    @property
+    def since(self) -> Array:
+        """When each was surely still to come."""
+        return self.times - self.doubt / 2.0
+
+    @property
+    def until(self) -> Array:
+        """When each had surely happened."""
+        return self.times + self.doubt / 2.0
+
+
+def changes_in(series: Series | None) -> Changes:
+    """The changes of a mode, from a series whose changes stand in the middle of their doubt.
+
+    None where the mode is not in the trace.
+    """
+    if series is None:
+        return Changes(np.zeros(0), np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64))
+    found = _differing(series)
+    doubt = np.zeros(len(series.times))
+    stamped = _stamped(series)
+    doubt[stamped] = 2.0 * (series.times[stamped] - series.times[stamped - 1])
+    values = np.rint(series.values).astype(np.int64)
+    return Changes(series.times[found], doubt[found], values[found - 1], values[found])
+
+
+def halved(series: Series) -> Series:
+    """The series of a mode with its changes moved to the middle of the doubt about them.
+
+    `changes_in` reads the doubt off the series that it gives.
+    """
+    found = _stamped(series)
+    times = np.array(series.times)
+    times[found] -= (times[found] - times[found - 1]) / 2.0
+    return replace(series, times=times)
+
+
+def _differing(series: Series) -> Integers:
+    """The samples that differ from the one before."""
+    return np.flatnonzero(np.diff(series.values) != 0.0) + 1
+
+
+def _stamped(series: Series) -> Integers:
+    """The samples at which a change shows; none where only changes are logged."""
+    found = _differing(series)
+    is_event_log = len(found) > EVENTS * max(len(series.values) - 1, 1)
+    return np.zeros(0, np.int64) if is_event_log else found
