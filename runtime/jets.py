@@ -5,7 +5,6 @@ kinks are the hull of those on both sides (Clarke's generalised derivative, for 
 theorem holds), of jumps all numbers. m: axes; N: boxes.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -48,7 +47,6 @@ class Jet:
 
 
 SURE: Final[Booleans] = np.asarray(True)  # noqa: FBT003 - an array of one
-Unary = Callable[[Jet], Jet]
 
 
 def constant(value: Interval) -> Jet:

@@ -23,8 +23,6 @@ PAPER: Final = "#ffffff"
 BLUE: Final = "#0072b2"
 VERMILION: Final = "#d55e00"
 GREEN: Final = "#009e73"
-PURPLE: Final = "#a6498a"
-ORANGE: Final = "#e69f00"
 SKY: Final = "#56b4e9"
 
 Format: TypeAlias = Literal["svg", "png", "pdf"]

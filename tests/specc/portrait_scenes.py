@@ -18,7 +18,6 @@ from verifier.topology.features import (
     AxisRange,
     Basins,
     Completeness,
-    Course,
     Cycle,
     FixedPoint,
     Grid,
@@ -129,7 +128,7 @@ def everything() -> Portrait:
         ),
         basins=basins(),
         switching=(Switching("forward", "back", (frozen([[0.01, -2.0], [0.01, 2.0]]),)),),
-        trajectories=(Trajectory(Course.SEED, times, line, 0),),
+        trajectories=(Trajectory(times, line, 0),),
         notes=("a note",),
     )
 

@@ -236,13 +236,6 @@ class Nullcline:
 
 
 @final
-class Course(StrEnum):
-    """Why a trajectory is in the portrait."""
-
-    SEED = "seed"
-
-
-@final
 @dataclass(frozen=True, eq=False, slots=True)
 class Trajectory:
     """A path `points` (T, m) at `times` (T,), in the direction of time.
@@ -251,7 +244,6 @@ class Trajectory:
     index of the point from which it was followed, forward and backward.
     """
 
-    course: Course
     times: Array
     points: Array
     start: int

@@ -137,7 +137,7 @@ def _pairs(values: Sequence[complex]) -> list[list[float]]:
 
 def _trajectory(axes: tuple[AxisRange, ...], path: Trajectory) -> dict[str, object]:
     return {
-        "course": str(path.course),
+        "course": "seed",  # why it is shown; there is one reason
         "start": path.start,
         "times": [_short(t) for t in path.times],
         "points": _points(axes, path.points),

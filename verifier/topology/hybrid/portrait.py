@@ -13,7 +13,6 @@ from runtime.arrays import Array, frozen
 from verifier.topology.cycles.limit_cycles import find_cycles
 from verifier.topology.features import (
     Completeness,
-    Course,
     Cycle,
     FixedPoint,
     Grid,
@@ -206,4 +205,4 @@ def _paths(hybrid: Hybrid, count: int) -> Iterator[Trajectory]:
         rank = np.repeat([0, 1, 2], [int(known.sum()), len(mine), len(mine)])
         order = np.lexsort((rank, clock))
         points = on_axes(hybrid, states)[order]
-        yield Trajectory(Course.SEED, frozen(clock[order]), frozen(points), 0)
+        yield Trajectory(frozen(clock[order]), frozen(points), 0)

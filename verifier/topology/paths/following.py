@@ -10,7 +10,7 @@ import numpy as np
 
 from runtime.arrays import Array, frozen
 from runtime.integrators import adaptive
-from verifier.topology.features import Course, Trajectory
+from verifier.topology.features import Trajectory
 from verifier.topology.slices import Slice, shortest, states_at
 
 LONGEST: Final = 4.0
@@ -51,25 +51,24 @@ def coarse_paths(follower: Follower, starts: Array) -> Array:
     return np.where((length <= LONGEST)[..., None], points, np.nan)
 
 
-def follow(follower: Follower, start: Array, course: Course) -> Trajectory:
+def follow(follower: Follower, start: Array) -> Trajectory:
     """The path from `start` (m,), looked at as often as its speed asks."""
     coarse = _points(follower, start[None], follower.times)[0]
     times = _times_between(follower, coarse)
     points = _points(follower, start[None], times)[0]
     count = _useful(follower, points)
-    return Trajectory(course, frozen(times[:count]), frozen(points[:count]), 0)
+    return Trajectory(frozen(times[:count]), frozen(points[:count]), 0)
 
 
 def turned_round(path: Trajectory) -> Trajectory:
     """A path that was followed backward, in the direction of time."""
     times = frozen(path.times[::-1])
-    return Trajectory(path.course, times, frozen(path.points[::-1]), len(times) - 1)
+    return Trajectory(times, frozen(path.points[::-1]), len(times) - 1)
 
 
 def joined(before: Trajectory, after: Trajectory) -> Trajectory:
     """What came before a point and what comes after it, as one path."""
     return Trajectory(
-        after.course,
         frozen(np.concatenate([before.times[:-1], after.times])),
         frozen(np.concatenate([before.points[:-1], after.points])),
         len(before.times) - 1,

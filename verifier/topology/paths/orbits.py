@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from runtime.arrays import Array, frozen
-from verifier.topology.features import Course, Trajectory
+from verifier.topology.features import Trajectory
 from verifier.topology.paths.seeds import spread
 from verifier.topology.slices import Slice, rates_at, wrapped
 
@@ -38,4 +38,4 @@ def _orbit(view: Slice, path: Array) -> Trajectory:
     known = np.all(np.isfinite(path), axis=-1)
     count = len(path) if known.all() else int(np.argmin(known))
     times = view.program.field.every * np.arange(count)
-    return Trajectory(Course.SEED, frozen(times), frozen(path[:count]), 0)
+    return Trajectory(frozen(times), frozen(path[:count]), 0)

@@ -9,7 +9,6 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans
 from verifier.topology.features import (
-    Course,
     FixedPoint,
     Grid,
     PointKind,
@@ -61,15 +60,15 @@ def find_trajectories(
     ends = np.array([p.at for p in fixed_points if p.kind in ENDS]).reshape(-1, len(view.axes))
     ahead = Follower(view, times, ends)
     behind = Follower(view, -times, ends)
-    shown = [follow(ahead, start, Course.SEED) for start in _beside_sources(view, fixed_points)]
+    shown = [follow(ahead, start) for start in _beside_sources(view, fixed_points)]
     covered = [*(s.points for s in separatrices), *(path.points for path in shown)]
     seeds = spread(view, CANDIDATES)
     chosen = _spread_out(
         view, covered, (coarse_paths(ahead, seeds), coarse_paths(behind, seeds)), count
     )
     for i in chosen:
-        before = turned_round(follow(behind, seeds[i], Course.SEED))
-        shown.append(joined(before, follow(ahead, seeds[i], Course.SEED)))
+        before = turned_round(follow(behind, seeds[i]))
+        shown.append(joined(before, follow(ahead, seeds[i])))
     return tuple(path for path in shown if len(path.times) > 1)
 
 
