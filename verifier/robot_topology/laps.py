@@ -1,0 +1,195 @@
+"""Laps of the robot around a cycle of its spec, and how long they take.
+
+The phase of a measured state is that of the nearest point of the spec's cycle, in which time runs
+evenly. A lap ends where the unwound phase has grown by one. When the robot passes a phase is found
+from all samples around (a line fitted to the phase), not from the two beside it; and the time from
+one passage to the next at the *same* phase does not depend on how well the spec's cycle fits, so
+the phase may be rough: its error is the same in each lap.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from runtime.arrays import Array
+from verifier.report.features import Estimate
+from verifier.robot_topology.intervals import student
+from verifier.robot_topology.scene import Scene, Stretch
+from verifier.topology.features import Cycle
+
+PHASES: Final = 512
+"""Points on the spec's cycle, evenly spaced in time."""
+SECTIONS: Final = 8
+"""Phases at which passages are timed."""
+REACH: Final = 0.04
+"""A passage is fitted to samples within this share of a lap to either side."""
+FEWEST: Final = 3
+"""Samples that a passage needs on the whole."""
+JUMP: Final = 0.3
+"""The phase of successive samples differs by less, else the robot is not on its way round."""
+SLOWEST: Final = 3.0
+"""A lap takes at most so many times as long as the spec's, and at least the inverse."""
+SETTLED: Final = 4.0
+"""Deviations of a lap's size from that of the late ones, in their own deviations, at most."""
+MANY: Final = 12
+"""From so many laps on, the correlation of successive ones is believed."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Laps:
+    """Laps in one stretch: `starts` (k + 1,), when each begins and the last one ends.
+
+    passages (sections, k + 1): times at which each section was passed, NaN where it is not told.
+    stretch: that they lie in.
+    """
+
+    stretch: Stretch
+    starts: Array
+    passages: Array
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return max(len(self.starts) - 1, 0)
+
+
+def laps_of(scene: Scene, cycle: Cycle) -> tuple[Laps, ...]:
+    """The robot's laps around `cycle` in each stretch, once they have settled."""
+    tree, scale = _tree(scene, cycle)
+    found = [_laps(scene, cycle, stretch, tree, scale) for stretch in scene.stretches]
+    return tuple(laps for laps in found if laps.count)
+
+
+def period_of_laps(laps: tuple[Laps, ...], confidence: float) -> Estimate | None:
+    """The mean time of a lap; None for fewer than three laps.
+
+    Times of successive laps are correlated in two ways: noise of a passage makes one longer and
+    the next one shorter by as much, while a wandering pace keeps it. Both are in the first two
+    autocovariances of the laps; with few laps the noise's help is not counted on.
+    """
+    times = np.concatenate([_durations(each) for each in laps]) if laps else np.empty(0)
+    times = times[np.isfinite(times)]
+    count = len(times)
+    if count < FEWEST:
+        return None
+    mean = float(np.mean(times))
+    deviation = times - mean
+    own = float(np.sum(deviation**2)) / (count - 1)
+    next_ = float(np.sum(deviation[1:] * deviation[:-1])) / (count - 1)
+    variance = own / count
+    if count >= MANY or next_ > 0.0:
+        variance = max((own + 2.0 * next_ * (1.0 - 1.0 / count)) / count, own / count**2)
+    return student(mean, float(np.sqrt(variance)), count, confidence)
+
+
+def on_cycle(cycle: Cycle, phases: Array) -> Array:
+    """The points (..., m) of the spec's cycle at `phases`, in laps; angles go on turning."""
+    part = np.mod(phases, 1.0) * cycle.period
+    times = cycle.times - cycle.times[0]
+    return np.stack([np.interp(part, times, column) for column in cycle.points.T], axis=-1)
+
+
+def _embedded(scene: Scene, points: Array) -> Array:
+    """Points (..., m) with each angle as a point of a circle of the same length."""
+    columns = []
+    for j, turn in enumerate(scene.turns):
+        if turn > 0.0:
+            angle = 2.0 * np.pi * points[..., j] / turn
+            radius = turn / (2.0 * np.pi)
+            columns += [radius * np.cos(angle), radius * np.sin(angle)]
+        else:
+            columns.append(points[..., j])
+    return np.stack(columns, axis=-1)
+
+
+def _tree(scene: Scene, cycle: Cycle) -> tuple[KDTree, Array]:
+    """The cycle's points for looking up the nearest, each axis in the cycle's own size."""
+    points = _embedded(scene, on_cycle(cycle, np.arange(PHASES) / PHASES))
+    size = np.ptp(points, axis=0)
+    scale = np.where(size > 1e-6 * np.max(size), size, np.max(size))
+    return KDTree(points / scale), scale
+
+
+def _laps(scene: Scene, cycle: Cycle, stretch: Stretch, tree: KDTree, scale: Array) -> Laps:
+    _, index = tree.query(_embedded(scene, stretch.values) / scale)
+    phase = np.unwrap(index / PHASES, period=1.0)
+    sections = np.arange(SECTIONS) / SECTIONS
+    whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1.0)
+    passages = np.array(
+        [[_passage(stretch, phase, lap + part, cycle.period) for lap in whole] for part in sections]
+    ).reshape(SECTIONS, len(whole))
+    starts = passages[0]
+    good = _is_lap(stretch, phase, starts, cycle.period)
+    first, last = _longest_run(good)
+    first += _unsettled(stretch, starts[first : last + 1])
+    return Laps(stretch, starts[first : last + 1], passages[:, first : last + 1])
+
+
+def _passage(stretch: Stretch, phase: Array, at: float, period: float) -> float:
+    """When the unwound phase passes `at`; NaN where it does not, or too few samples tell."""
+    above = np.flatnonzero((phase[:-1] < at) & (phase[1:] >= at))
+    if len(above) == 0:
+        return np.nan
+    guess = float(np.median(stretch.times[above]))
+    for _ in range(2):
+        reach = max(REACH * period, FEWEST * stretch.step)
+        low, high = np.searchsorted(stretch.times, [guess - reach, guess + reach])
+        times = stretch.times[low:high] - guess
+        if len(times) < FEWEST or times[0] > 0.0 or times[-1] < 0.0:
+            return np.nan
+        slope, level = np.polyfit(times, phase[low:high] - at, 1)
+        if slope <= 0.0 or abs(level / slope) > reach:
+            return np.nan
+        guess -= level / slope
+    return guess
+
+
+def _is_lap(stretch: Stretch, phase: Array, starts: Array, period: float) -> list[bool]:
+    """Of each pair of successive starts, whether it bounds a lap without breaks."""
+    good = []
+    for first, last in zip(starts[:-1], starts[1:], strict=True):
+        inside = (stretch.times >= first) & (stretch.times <= last)
+        steps = np.abs(np.diff(phase[inside]))
+        calm = len(steps) > 0 and float(np.max(steps)) < JUMP
+        good.append(calm and 1.0 / SLOWEST < (last - first) / period < SLOWEST)
+    return good
+
+
+def _longest_run(good: list[bool]) -> tuple[int, int]:
+    """First and last start of the longest run of good laps."""
+    best = (0, 0)
+    first = 0
+    for i, each in enumerate([*good, False]):
+        if not each:
+            best = max(best, (first, i), key=lambda run: run[1] - run[0])
+            first = i + 1
+    return best
+
+
+def _unsettled(stretch: Stretch, starts: Array) -> int:
+    """How many of the first laps still differ in size from those of the second half."""
+    count = len(starts) - 1
+    if count < FEWEST + 1:
+        return min(1, max(count - 1, 0))
+    sizes = np.array(
+        [
+            np.std(stretch.values[(stretch.times >= a) & (stretch.times < b)], axis=0)
+            for a, b in zip(starts[:-1], starts[1:], strict=True)
+        ]
+    )
+    late = sizes[count // 2 :]
+    middle = np.median(late, axis=0)
+    spread = np.maximum(1.4826 * np.median(np.abs(late - middle), axis=0), 2e-3 * middle)
+    far = np.any(np.abs(sizes - middle) > SETTLED * spread, axis=1)[: count // 2]
+    return int(np.argmin(np.append(far, False)))
+
+
+def _durations(laps: Laps) -> Array:
+    """The time of each lap, the mean over the sections at which both its ends are known."""
+    differences = np.diff(laps.passages, axis=1)
+    known = np.isfinite(differences)
+    total = np.sum(np.where(known, differences, 0.0), axis=0)
+    return np.where(np.any(known, axis=0), total / np.maximum(known.sum(axis=0), 1), np.nan)

@@ -1,0 +1,147 @@
+"""The mean lap of the robot, and how far it swings.
+
+All samples of the laps are laid over one another by phase and smoothed by a local parabola. What
+smoothing does to a sharp turn it does to the spec's cycle, too, when that is sampled at the same
+phases: the robot's swing is the spec's plus the difference of the two smooth laps. Intervals come
+from resampling whole laps (the bootstrap of blocks, a lap being a block).
+
+Letters: N samples, G phases of the grid, k laps, m axes, B resamples.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from runtime.arrays import Array, Integers
+from verifier.report.features import Estimate
+from verifier.robot_topology.intervals import student
+from verifier.robot_topology.laps import Laps, on_cycle
+from verifier.topology.features import Cycle
+
+GRID: Final = 120
+WIDTH: Final = 0.02
+"""Of the smoother, in laps."""
+PER_PHASE: Final = 6.0
+"""The smoother is wide enough to hold so many samples."""
+RESAMPLES: Final = 200
+MOST: Final = 20_000
+"""So many samples are enough."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Samples:
+    """Samples by phase in [0, 1): `values` (N, m), `spec` (N, m) there, the `lap` of each (N,)."""
+
+    phase: Array
+    values: Array
+    spec: Array
+    lap: Integers
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class MeanLap:
+    """`points` (G, m) of the robot; its swing on each axis from `lowest` to `highest`."""
+
+    points: Array
+    lowest: tuple[Estimate, ...]
+    highest: tuple[Estimate, ...]
+    amplitude: tuple[Estimate, ...]
+
+
+def mean_lap(
+    laps: tuple[Laps, ...], cycle: Cycle, confidence: float, rng: np.random.Generator
+) -> MeanLap | None:
+    """The mean lap, None for fewer than three laps."""
+    samples = _gathered(laps, cycle)
+    count = int(samples.lap.max(initial=-1)) + 1
+    if count < 3:
+        return None
+    grid = np.arange(GRID) / GRID
+    moments, of_robot = _moments(samples, samples.values, grid, count)
+    _, of_spec = _moments(samples, samples.spec, grid, count)
+    everything = np.ones((1, count))
+    picks = rng.multinomial(count, np.full(count, 1.0 / count), RESAMPLES).astype(np.float64)
+    exact = _swing(on_cycle(cycle, np.arange(4 * GRID) / (4 * GRID))[None])
+    plain = _swing(_smooth(everything, moments, of_spec))
+    loop = _smooth(everything, moments, of_robot)
+    value = (_swing(loop) - plain + exact)[0]
+    drawn = _swing(_smooth(picks, moments, of_robot)) - _swing(_smooth(picks, moments, of_spec))
+    error = np.sqrt(count / (count - 1.0)) * np.std(drawn, axis=0)
+    low, high, amplitude = (
+        tuple(
+            student(float(v), float(e), count, confidence)
+            for v, e in zip(values, errors, strict=True)
+        )
+        for values, errors in zip(value, error, strict=True)
+    )
+    return MeanLap(loop[0], low, high, amplitude)
+
+
+def _gathered(laps: tuple[Laps, ...], cycle: Cycle) -> Samples:
+    phases, values, lap = [], [], []
+    before = 0
+    for each in laps:
+        times, inside = each.stretch.times, each.stretch.values
+        kept = (times >= each.starts[0]) & (times < each.starts[-1])
+        index = np.searchsorted(each.starts, times[kept], side="right") - 1
+        length = np.diff(each.starts)[index]
+        phases.append((times[kept] - each.starts[index]) / length)
+        values.append(_on_one_turn(inside[kept], index, phases[-1], cycle))
+        lap.append(index + before)
+        before += each.count
+    phase = np.concatenate(phases) if phases else np.empty(0)
+    stride = max(1, len(phase) // MOST)
+    every = slice(None, None, stride)
+    joined = np.concatenate(values) if values else np.empty((0, cycle.points.shape[1]))
+    which = np.concatenate(lap) if lap else np.empty(0, np.int64)
+    return Samples(phase[every], joined[every], on_cycle(cycle, phase[every]), which[every])
+
+
+def _on_one_turn(values: Array, index: Integers, phase: Array, cycle: Cycle) -> Array:
+    """Angles of each lap moved by whole turns to where the spec's cycle is."""
+    spec = on_cycle(cycle, phase)
+    moved = np.array(values)
+    for j, turns in enumerate(cycle.turns):
+        period = abs(cycle.points[-1, j] - cycle.points[0, j]) / turns if turns else 0.0
+        if period == 0.0:
+            continue
+        for lap in np.unique(index):
+            own = index == lap
+            off = np.median(values[own, j] - spec[own, j])
+            moved[own, j] -= abs(period) * np.rint(off / abs(period))
+    return moved
+
+
+def _moments(samples: Samples, values: Array, grid: Array, count: int) -> tuple[Array, Array]:
+    """Per lap the normal equations of the parabola at each phase: (k, G, 3, 3), (k, G, 3, m)."""
+    width = max(WIDTH, 0.5 * PER_PHASE / max(len(samples.phase), 1))
+    normal = np.zeros((count, len(grid), 3, 3))
+    right = np.zeros((count, len(grid), 3, values.shape[1]))
+    for lap in range(count):
+        own = samples.lap == lap
+        off = samples.phase[own][None, :] - grid[:, None]
+        off = (off - np.rint(off)) / width
+        weight = np.maximum(1.0 - off**2, 0.0)
+        powers = np.stack([np.ones_like(off), off, off**2], axis=-1)
+        weighted = powers * weight[..., None]
+        normal[lap] = np.einsum("gni,gnj->gij", weighted, powers)
+        right[lap] = np.einsum("gni,nj->gij", weighted, values[own])
+    return normal, right
+
+
+def _smooth(picks: Array, normal: Array, right: Array) -> Array:
+    """The smooth lap (B, G, m) of each choice of laps, `picks` (B, k) saying how often each."""
+    matrix = np.einsum("bk,kgij->bgij", picks, normal)
+    trace = np.trace(matrix, axis1=-2, axis2=-1)[..., None, None]
+    matrix += 1e-9 * np.maximum(trace, 1e-300) * np.eye(3)
+    sides = np.einsum("bk,kgij->bgij", picks, right)
+    return np.asarray(np.linalg.solve(matrix, sides)[..., 0, :])
+
+
+def _swing(loops: Array) -> Array:
+    """Lowest, highest, half their distance (B, 3, m) of loops (B, G, m)."""
+    low, high = loops.min(axis=-2), loops.max(axis=-2)
+    return np.stack([low, high, 0.5 * (high - low)], axis=-2)
