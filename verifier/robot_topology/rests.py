@@ -1,0 +1,132 @@
+"""Where the robot comes to rest.
+
+It rests while the means of two successive spans, each as long as the field needs to settle, differ
+by no more than noise and half the tolerance allow; a rest lasts until it leaves, or the stretch
+ends. A saddle that is only passed slowly is left again, so a rest that ends early does not count.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans
+from verifier.report.features import Estimate
+from verifier.robot_topology.intervals import student
+from verifier.robot_topology.scene import Scene, Stretch, shortest
+from verifier.topology.features import FixedPoint
+
+LENGTHS: Final = 3.0
+"""A rest lasts at least so many settling times, not counting the one in which it settles."""
+SPAN: Final = 10
+"""Samples in a span, at least."""
+SURE: Final = 4.0
+"""Deviations of the difference of two means that are put down to noise."""
+SHARE: Final = 0.5
+"""Of the tolerance, that the means may differ by."""
+SMALL: Final = 0.005
+"""Of the domain: stands for the tolerance where none is declared."""
+MANY: Final = 3
+"""Visits whose own spread is told."""
+BATCHES: Final = 20
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Rest:
+    """One rest: `values` (N, m) in the order of time, angles unwrapped."""
+
+    values: Array
+
+    @property
+    def place(self) -> Array:
+        """The mean, (m,)."""
+        return np.asarray(np.mean(self.values, axis=0))
+
+
+def settling_time(scene: Scene, points: tuple[FixedPoint, ...]) -> float:
+    """Of the slowest attractor, s; the horizon where there is none."""
+    every = scene.program.field.every
+    times = []
+    for point in points:
+        values = np.array(point.eigenvalues)
+        rates = -np.log(np.abs(values)) / every if every else -values.real
+        slowest = float(np.min(rates, initial=np.inf))
+        times.append(1.0 / slowest if slowest > 0.0 else np.inf)
+    finite = [time for time in times if 0.0 < time < np.inf]
+    return max(finite, default=scene.horizon)
+
+
+def rests_of(scene: Scene, settling: float) -> tuple[Rest, ...]:
+    """All rests, in order of time."""
+    return tuple(rest for stretch in scene.stretches for rest in _rests(scene, stretch, settling))
+
+
+def resting_place(
+    scene: Scene, rests: tuple[Rest, ...], settling: float, step: float, confidence: float
+) -> tuple[Estimate, ...]:
+    """The mean place of rests, an estimate an axis, angles near that of the first rest.
+
+    Its error is that between batches of one settling time or more, and with three visits or more
+    that between visits, if it is larger.
+    """
+    first = rests[0].place
+    moved = [rest.values + _to(first, rest.place, scene.turns) for rest in rests]
+    together = np.concatenate(moved)
+    size = max(1, int(np.ceil(LENGTHS * settling / step)), len(together) // BATCHES)
+    batches = np.array([np.mean(p, axis=0) for each in moved for p in _cut(each, size)])
+    count = len(batches)
+    error = np.std(batches, axis=0, ddof=1) / np.sqrt(count)
+    error = np.maximum(error, scene.noise / np.sqrt(len(together)))
+    value = np.mean(together, axis=0)
+    if len(moved) >= MANY:
+        visits = np.array([np.mean(each, axis=0) for each in moved])
+        between = np.std(visits, axis=0, ddof=1) / np.sqrt(len(visits))
+        if np.any(between > error):
+            error, count, value = np.maximum(error, between), len(visits), visits.mean(axis=0)
+    return tuple(
+        student(float(v), float(e), count, confidence) for v, e in zip(value, error, strict=True)
+    )
+
+
+def allowance(scene: Scene) -> Array:
+    """The tolerance of each axis, or a small share of its domain, (m,)."""
+    return np.where(np.isfinite(scene.tolerance), scene.tolerance, SMALL * scene.width)
+
+
+def _to(target: Array, place: Array, turns: Array) -> Array:
+    """By how many whole turns `place` is moved to be near `target`."""
+    return np.asarray(target + shortest(place - target, turns) - place)
+
+
+def _cut(values: Array, size: int) -> list[Array]:
+    """Pieces of about `size`, at least two."""
+    return np.array_split(values, max(2, len(values) // size))
+
+
+def _rests(scene: Scene, stretch: Stretch, settling: float) -> list[Rest]:
+    span = max(SPAN, int(np.ceil(settling / stretch.step)))
+    count = len(stretch.times)
+    if count < (1.0 + LENGTHS) * span:
+        return []
+    sums = np.concatenate([np.zeros((1, stretch.values.shape[1])), np.cumsum(stretch.values, 0)])
+    means = (sums[span:] - sums[:-span]) / span
+    moved = np.abs(means[span:] - means[:-span])
+    allowed = np.maximum(
+        SHARE * allowance(scene), SURE * scene.noise * np.sqrt(2.0 / span)
+    )
+    calm = np.all(moved <= allowed, axis=-1)
+    found = []
+    for first, last in _runs(calm):
+        # Calm at i speaks of the samples i to i + 2 span; in the first span it may still settle.
+        begin, end = first + span, min(last - 1 + 2 * span, count)
+        to_the_end = end >= count - 1
+        if end - begin >= LENGTHS * span * (1.0 if to_the_end else 2.0):
+            found.append(Rest(stretch.values[begin:end]))
+    return found
+
+
+def _runs(calm: Booleans) -> list[tuple[int, int]]:
+    """First and one past the last index of each run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], calm, [False]]).astype(np.int64)))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
