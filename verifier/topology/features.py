@@ -43,6 +43,11 @@ class AxisRange:
         """The length of the domain."""
         return self.high - self.low
 
+    def shortest(self, difference: float) -> float:
+        """A difference of two values, the short way round where the axis is periodic."""
+        turns = round(difference / self.width) if self.periodic else 0
+        return difference - self.width * turns
+
 
 @final
 @dataclass(frozen=True, slots=True)

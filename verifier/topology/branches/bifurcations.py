@@ -234,8 +234,7 @@ def _limited(axes: tuple[AxisRange, ...], steps: Steps) -> Steps:
 def _distance(axes: tuple[AxisRange, ...], a: Array, b: Array) -> float:
     """The largest difference in widths, the short way round."""
     off = [
-        abs(d - axis.width * round(d / axis.width) if axis.periodic else d) / axis.width
-        for axis, d in zip(axes, (a - b).tolist(), strict=True)
+        abs(axis.shortest(d)) / axis.width for axis, d in zip(axes, (a - b).tolist(), strict=True)
     ]
     return float(max(off))
 

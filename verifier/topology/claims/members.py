@@ -195,7 +195,7 @@ class _Conditions:
         """What is wrong with where a point is."""
         for place, wanted in zip(self._claim.places, self._places, strict=True):
             j, axis = self._axes[place.state]
-            off = abs(_short(axis, float(point.at[j]) - float(wanted)))
+            off = abs(axis.shortest(float(point.at[j]) - float(wanted)))
             if not off <= place.within:
                 return f"not at {axis.name} = {shown(axis, float(wanted))}", off / place.within
         return FINE
@@ -223,8 +223,3 @@ class _Conditions:
         share = f", {100.0 * off / abs(self._period):.3g} % off" if self._period else ""
         why = f"its period is {cycle.period:.6g} s, not {self._period:.6g} s{share}"
         return why, off / room if room > 0.0 else np.inf
-
-
-def _short(axis: AxisRange, difference: float) -> float:
-    """A difference on an axis, the short way round where it is periodic."""
-    return difference - axis.width * round(difference / axis.width) if axis.periodic else difference
