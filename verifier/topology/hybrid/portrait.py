@@ -21,6 +21,7 @@ from verifier.topology.features import (
     Trajectory,
 )
 from verifier.topology.hybrid.basins import find_hybrid_basins
+from verifier.topology.hybrid.contours import zero_lines
 from verifier.topology.hybrid.cycles import find_hybrid_cycles
 from verifier.topology.hybrid.flow import (
     ROUGH,
@@ -31,7 +32,6 @@ from verifier.topology.hybrid.flow import (
     on_axes,
     points_in,
 )
-from verifier.topology.lines.contours import zero_lines
 from verifier.topology.paths.seeds import spread
 from verifier.topology.slices import cut, rates_at, wrapped
 from verifier.topology.zeros.fixed_points import find_fixed_points
