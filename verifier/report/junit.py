@@ -1,0 +1,113 @@
+"""The report as JUnit XML, for the test pages of Jenkins, GitLab and others.
+
+A test suite is a trace, a test case one requirement of the spec: a `failure` where the robot is
+shown to break it, an `error` where the trace does not decide (a build must not turn green on
+that), or where the trace can't be used at all. Valid against the schema of Jenkins' xUnit plugin
+(junit-10.xsd), whose `file` and `line` of a test case GitLab shows as well.
+"""
+
+import re
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Final
+from xml.etree import ElementTree as ET
+
+from verifier.report.examination import Examination
+from verifier.report.places import place_of
+from verifier.report.report import Report, Standing
+from verifier.report.requirements import Requirement, requirements_of
+
+FORBIDDEN: Final = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 can't hold, not even escaped."""
+YEAR: Final = 365.25 * 86400.0
+"""A log's clock that is not set starts in 1970: such a date is left out."""
+
+
+def as_junit(
+    examinations: Sequence[Examination], unusable: Sequence[tuple[str, str]] = ()
+) -> bytes:
+    """All traces as one document; `unusable` are those without a report, `(source, why)`."""
+    suites = [_suite(each) for each in examinations]
+    suites += [_unusable(source, why) for source, why in unusable]
+    root = ET.Element("testsuites", {"name": "specc verify", **_counts(suites)})
+    root.extend(suites)
+    ET.indent(root)
+    document: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return document + b"\n"
+
+
+def _suite(examination: Examination) -> ET.Element:
+    report = examination.report
+    cases = [_case(each, report) for each in requirements_of(examination)]
+    attributes = {"name": clean(report.trace.source), **_counted(cases)}
+    start = report.trace.start
+    if YEAR < start < 200.0 * YEAR:
+        attributes["timestamp"] = f"{datetime.fromtimestamp(start, UTC):%Y-%m-%dT%H:%M:%S}"
+    suite = ET.Element("testsuite", attributes)
+    suite.append(_properties(report))
+    suite.extend(cases)
+    return suite
+
+
+def _properties(report: Report) -> ET.Element:
+    properties = ET.Element("properties")
+    named = {
+        "verdict": str(report.verdict),
+        "spec": report.spec.file,
+        "spec sha256": report.spec.sha256,
+        "judged seconds": f"{report.trace.judged:.6g}",
+    }
+    for name, value in named.items():
+        ET.SubElement(properties, "property", {"name": name, "value": clean(value)})
+    return properties
+
+
+def _case(requirement: Requirement, report: Report) -> ET.Element:
+    case = _bare_case(requirement.name, report.spec.name, requirement.origin)
+    outcome = {Standing.EXCEEDED: "failure", Standing.UNDECIDED: "error"}
+    if requirement.standing in outcome:
+        lines = clean(requirement.message).splitlines() or [""]
+        attributes = {"message": lines[0], "type": str(requirement.standing)}
+        told = ET.SubElement(case, outcome[requirement.standing], attributes)
+        told.text = "\n".join([*lines, requirement.origin]).strip()
+    return case
+
+
+def _bare_case(name: str, classname: str, origin: str) -> ET.Element:
+    attributes = {"name": clean(name), "classname": clean(classname), "time": "0"}
+    place = place_of(origin)
+    if place is not None:
+        attributes["file"] = clean(place.file)
+        if place.line:
+            attributes["line"] = str(place.line)
+    return ET.Element("testcase", attributes)
+
+
+def _unusable(source: str, why: str) -> ET.Element:
+    case = _bare_case("can be judged", "specc verify", "")
+    first = (clean(why).splitlines() or [""])[0]
+    told = ET.SubElement(case, "error", {"message": first, "type": "unusable"})
+    told.text = clean(why)
+    suite = ET.Element("testsuite", {"name": clean(source), **_counted([case])})
+    suite.append(case)
+    return suite
+
+
+def _counted(cases: Sequence[ET.Element]) -> dict[str, str]:
+    """The counts of one suite."""
+    found = {name: sum(c.find(name) is not None for c in cases) for name in ("failure", "error")}
+    failures, errors = str(found["failure"]), str(found["error"])
+    return {"tests": str(len(cases)), "failures": failures, "errors": errors, "time": "0"}
+
+
+def _counts(suites: Sequence[ET.Element]) -> dict[str, str]:
+    """The sums over all suites."""
+    return {
+        name: str(sum(int(suite.attrib[name]) for suite in suites))
+        for name in ("tests", "failures", "errors")
+    } | {"time": "0"}
+
+
+def clean(text: str) -> str:
+    """The text without what XML can't hold."""
+    return FORBIDDEN.sub("�", text)

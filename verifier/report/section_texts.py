@@ -1,0 +1,115 @@
+"""The sections of an examination as plain text: their sentences, and short tables beside them."""
+
+from verifier.report.diagnosis import Diagnosis
+from verifier.report.examination import Examination
+from verifier.report.features import FeatureNumber, Features
+from verifier.report.layout import INDENT, bullets, section, table
+from verifier.report.limits import Limits
+from verifier.report.scores import Scores, VariableScores
+from verifier.report.switching import Switching
+from verifier.report.wording import number, percent, quantity, shown
+
+MOST_CANDIDATES = 5
+
+
+def section_texts(examination: Examination) -> tuple[str, ...]:
+    """The sections that were computed and have something to say, in the order of reading."""
+    of = examination
+    texts = (
+        "" if of.diagnosis is None else _diagnosis(of.diagnosis),
+        "" if of.switching is None else _switching(of.switching),
+        "" if of.features is None else _features(of.features),
+        "" if of.limits is None else _limits(of.limits),
+        "" if of.scores is None else _scores(of.scores),
+    )
+    return tuple(text for text in texts if text)
+
+
+def _diagnosis(diagnosis: Diagnosis) -> str:
+    rows = [
+        (
+            each.label,
+            ", ".join(f"{n.name} {quantity(n.value, n.unit)}" for n in each.numbers),
+            f"explains {percent(max(each.evidence.share, 0.0))} of what departs",
+            "named" if each.is_taken else "",
+        )
+        for each in diagnosis.candidates[:MOST_CANDIDATES]
+    ]
+    title = f"why: {diagnosis.told}"
+    return section(title, [bullets(diagnosis.sentences), table(rows, INDENT)])
+
+
+def _switching(switching: Switching) -> str:
+    rows = [
+        (
+            f"{way.source} to {way.target}",
+            str(way.expected),
+            str(way.unexpected),
+            str(way.missed),
+            str(way.wrong),
+            "-" if way.timing is None else f"{number(way.timing.late)} s",
+            "-" if way.timing is None else f"{number(way.timing.allowed)} s",
+            str(way.standing),
+        )
+        for way in switching.ways
+    ]
+    header = ("", "expected", "unexpected", "missed", "elsewhere", "late", "allowed", "")
+    blocks = [bullets(switching.reasons), table([header, *rows], INDENT) if rows else ""]
+    return section(f"changes of {switching.mode}: {switching.standing}", blocks)
+
+
+def _features(features: Features) -> str:
+    rows = [
+        (
+            feature.name,
+            each.name,
+            each.unit.text,
+            "-" if each.spec != each.spec else shown(each.spec, each.unit),
+            _robot(each),
+            str(each.standing),
+        )
+        for feature in features.features
+        for each in feature.numbers
+    ]
+    header = ("", "", "unit", "spec", "robot", "")
+    sentences = [feature.sentence for feature in features.features]
+    blocks = [bullets(sentences), table([header, *rows], INDENT) if rows else ""]
+    return section("features of the field", [*blocks, bullets(features.notes)])
+
+
+def _robot(each: FeatureNumber) -> str:
+    if each.robot is None:
+        return "-"
+    interval = each.robot.interval
+    low, high = shown(interval.low, each.unit), shown(interval.high, each.unit)
+    return f"{shown(each.robot.value, each.unit)} ({low} to {high})"
+
+
+def _limits(limits: Limits) -> str:
+    untold = [
+        " ".join([f"{each.what}:", each.why, each.suggestion]).strip() for each in limits.not_told
+    ]
+    caught = [each.sentence for each in limits.caught]
+    told = section("what this trace can't tell", [bullets(untold)])
+    test = section("what would have been caught", [bullets([*caught, *limits.notes])])
+    return "\n\n".join(text for text in (told, test) if text)
+
+
+def _scores(scores: Scores) -> str:
+    header = ("", "ISO 18571", "corridor", "phase", "magnitude", "slope", "NRMSE", "R²")
+    rows = [_score_row(each) for each in scores.variables]
+    blocks = [bullets(scores.sentences), table([header, *rows], INDENT)]
+    return section("scores, for comparison only", blocks)
+
+
+def _score_row(each: VariableScores) -> tuple[str, ...]:
+    iso = each.iso
+    parts = (
+        ("-",) * 5
+        if iso is None
+        else tuple(
+            f"{part:.3f}"
+            for part in (iso.overall, iso.corridor, iso.phase, iso.magnitude, iso.slope)
+        )
+    )
+    return (each.name, *parts, number(each.nrmse), f"{each.r_squared:.3f}")
