@@ -1,6 +1,7 @@
 """Which topic or column each variable of a program is read from."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import final
 
@@ -38,10 +39,14 @@ class Bound:
         return self.path is not None and self.path.derived != ""
 
 
-def wanted_topics(program: Program) -> frozenset[str]:
-    """The topics that the program's bindings name, its own recordings' included."""
-    paths = [binding.path for binding in (*program.bindings, *_own_bindings(program))]
-    return frozenset(topic for path in paths if (topic := _topic(path)))
+def wanted_paths(program: Program) -> dict[str, tuple[MessagePath, ...]]:
+    """By topic, the paths of the program's bindings, its own recordings' included."""
+    wanted: dict[str, dict[str, MessagePath]] = {}
+    for binding in (*program.bindings, *_own_bindings(program)):
+        with suppress(PathError):
+            path = parse_path(binding.path)
+            wanted.setdefault(path.topic, {})[path.text] = path
+    return {topic: tuple(paths.values()) for topic, paths in wanted.items()}
 
 
 def resolve(program: Program, log: LogFile) -> tuple[Bound, ...]:

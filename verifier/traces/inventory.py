@@ -1,6 +1,6 @@
 """What a log holds: topics, rates, and the paths of all numbers with what they look like."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
@@ -8,12 +8,10 @@ import numpy as np
 
 from runtime.arrays import Integers
 from verifier.traces.clock import stamp_fault
-from verifier.traces.files.log import MessageLog, Messages, Sheet, Wanted
+from verifier.traces.files.log import MessageLog, Sheet, Wanted
 from verifier.traces.files.open_log import attached_program, open_log
 from verifier.traces.messages.columns import Column
-from verifier.traces.messages.fields import FieldError, shape
-from verifier.traces.messages.leaves import list_fields, list_quaternions
-from verifier.traces.messages.paths import DERIVED, MessagePath, column_text, path_text
+from verifier.traces.messages.paths import column_text
 from verifier.traces.samples import Samples, sample_sheet, sample_topic
 from verifier.traces.trace import Loss
 
@@ -110,20 +108,20 @@ def inspect(path: Path) -> Inventory:
 def _topic_info(log: MessageLog, topic: str) -> TopicInfo:
     streams = [stream for stream in log.streams if stream.channel.topic == topic]
     # Channels of one topic nearly always have one type; the fields are those of the first.
-    first = next((stream for stream in streams if stream.payloads), streams[0])
+    first = next((stream for stream in streams if stream.count), streams[0])
     times = np.concatenate([stream.times for stream in streams])
     fields: tuple[FieldInfo, ...] = ()
     rate, note = _rate(times), ""
-    try:
-        samples = _sampled(first)
-    except FieldError as error:
-        note = error.message
-    else:
+    values = first.values
+    if values is not None and values.fault:
+        note = values.fault.message
+    elif values is not None:
+        samples = sample_topic([first])
         fields = _field_infos(samples)
         if samples.stamps is not None and not stamp_fault(samples):
             rate = _rate(samples.stamps)
-        if len(first.payloads) < first.times.size:
-            note = f"values of the first {len(first.payloads)} messages"
+        if values.readable.size < first.count:
+            note = f"values of the first {values.readable.size} messages"
     return TopicInfo(
         name=topic,
         message_type=first.channel.message_type,
@@ -134,18 +132,6 @@ def _topic_info(log: MessageLog, topic: str) -> TopicInfo:
         fields=fields,
         note=note,
     )
-
-
-def _sampled(stream: Messages) -> Samples:
-    root = shape(stream)
-    topic = stream.channel.topic
-    paths = [MessagePath(path_text(topic, steps), topic, steps, "") for steps in list_fields(root)]
-    for steps in list_quaternions(root):
-        start = path_text(topic, steps)
-        paths += [MessagePath(f"{start}.@{name}", topic, steps, name) for name in DERIVED]
-    count = len(stream.payloads)
-    kept = replace(stream, times=stream.times[:count], places=stream.places[:count])
-    return sample_topic([kept], paths)
 
 
 def _sheet_info(sheet: Sheet) -> TopicInfo:

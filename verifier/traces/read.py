@@ -10,11 +10,11 @@ import numpy as np
 from runtime.arrays import Array, Booleans, Integers, frozen
 from runtime.program import Binding, Kind, Program, State
 from spec_schema.diagnostics import Diagnostic, SpecError
-from verifier.traces.bindings import Bound, resolve, texts_of, wanted_topics
+from verifier.traces.bindings import Bound, resolve, texts_of, wanted_paths
 from verifier.traces.cleaning import Ordering, order
 from verifier.traces.clock import Clock, choose_clocks, stamp_fault
 from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fault
-from verifier.traces.files.log import LogFile, MessageLog, Sheet, Wanted
+from verifier.traces.files.log import LogFile, MessageLog, Progress, Sheet, Wanted
 from verifier.traces.files.open_log import open_log
 from verifier.traces.messages.fields import FieldError
 from verifier.traces.messages.paths import MessagePath
@@ -25,13 +25,19 @@ from verifier.traces.values import Meaning, Measured, NotNumbersError, measured
 ClockWish: TypeAlias = Literal["auto", "sensor", "log"]
 
 
-def read_trace(path: Path, program: Program, clock: ClockWish = "auto") -> Trace:
+def read_trace(
+    path: Path,
+    program: Program,
+    clock: ClockWish = "auto",
+    progress: Progress | None = None,
+) -> Trace:
     """What the log says about the program's variables, in SI, with every loss counted.
 
     clock: which stamps are the times; `auto` takes the sensors' where that can be done for all
-    topics on one clock. Raises SpecError V301 to V312, all at once, where nothing can be judged.
+    topics on one clock. progress: is told now and then how many bytes of how many were read.
+    Raises SpecError V301 to V312, all at once, where nothing can be judged.
     """
-    log = open_log(path, Wanted(wanted_topics(program)))
+    log = open_log(path, Wanted(wanted_paths(program)), progress)
     if isinstance(log, MessageLog) and not log.streams:
         raise file_fault(path, "V306", "no message can be read", _damage(log.losses))
     bound = resolve(program, log)
@@ -83,7 +89,7 @@ def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str,
     problems: list[Diagnostic] = []
     topics: dict[str, Samples] = {}
     for topic in dict.fromkeys(one.topic for one in bound):
-        streams = tuple(s for s in log.streams if s.channel.topic == topic and s.payloads)
+        streams = tuple(s for s in log.streams if s.channel.topic == topic and s.count)
         here = [one for one in bound if one.topic == topic and one.path]
         faults = [
             _field_diagnostic(program, one.binding, one.path, error)
@@ -92,7 +98,7 @@ def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str,
         ]
         problems += faults
         if not faults and streams:
-            topics[topic] = sample_topic(streams, [one.path for one in here if one.path])
+            topics[topic] = sample_topic(streams)
     if problems:
         raise SpecError(problems)
     return topics

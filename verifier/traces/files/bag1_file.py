@@ -13,8 +13,9 @@ from typing import TypeAlias
 
 import lz4.frame
 
-from verifier.traces.files.log import Channel, MessageLog, Wanted
+from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.streams import Gathering
+from verifier.traces.messages.channel import Channel
 
 MAGIC = b"#ROSBAG V2.0\n"
 LARGEST_CHUNK = 1 << 31
@@ -29,7 +30,7 @@ def is_bag1(head: bytes) -> bool:
     return head.startswith(b"#ROSBAG V")
 
 
-def read_bag1(path: Path, wanted: Wanted) -> MessageLog:
+def read_bag1(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
     """All that can be read of the bag, and what could not; raises OSError."""
     gathering: Gathering[int] = Gathering(wanted)
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
@@ -137,7 +138,7 @@ def _read_record(kind: int, header: Header, body: bytes, gathering: Gathering[in
     elif kind == _MESSAGE and len(header.get(b"time", b"")) == 8:
         seconds, nanoseconds = struct.unpack("<II", header[b"time"])
         log_time = seconds * 1_000_000_000 + nanoseconds
-        gathering.add(_number(header.get(b"conn", b"")), log_time, body)
+        gathering.add(_number(header.get(b"conn", b"")), log_time, body, 0, len(body))
 
 
 def _number(data: bytes) -> int:

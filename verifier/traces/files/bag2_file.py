@@ -7,8 +7,9 @@ from rosbags.interfaces import Connection, MessageDefinitionFormat
 from rosbags.rosbag2 import Reader
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
-from verifier.traces.files.log import Channel, MessageLog, Wanted
+from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.streams import Gathering
+from verifier.traces.messages.channel import Channel
 
 _SCHEMA_ENCODINGS = {
     MessageDefinitionFormat.MSG: "ros2msg",
@@ -24,7 +25,7 @@ def is_sqlite(head: bytes) -> bool:
     return head.startswith(b"SQLite format 3\0")
 
 
-def read_bag2(path: Path, wanted: Wanted) -> MessageLog:
+def read_bag2(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
     """The messages of a bag: a folder with `metadata.yaml`, or one database file."""
     gathering: Gathering[str] = Gathering(wanted)
     reader: AnyReader = Reader(path) if path.is_dir() else Sqlite3Reader(path)
@@ -47,7 +48,7 @@ def _read_messages(reader: AnyReader, gathering: Gathering[str]) -> None:
     for connection in reader.connections:
         gathering.declare(_key(connection), _channel(connection))
     for connection, log_time, payload in reader.messages(reader.connections):
-        gathering.add(_key(connection), log_time, bytes(payload))
+        gathering.add(_key(connection), log_time, bytes(payload), 0, len(payload))
 
 
 def _key(connection: Connection) -> str:

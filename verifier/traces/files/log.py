@@ -1,31 +1,28 @@
-"""What the readers of files hand on: messages as they were written, or a sheet of columns."""
+"""What the readers of files hand on: the values of messages, or a sheet of columns."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import TypeAlias, final
 
+import numpy as np
+import numpy.typing as npt
+
 from runtime.arrays import Integers
+from verifier.traces.messages.channel import Channel
+from verifier.traces.messages.paths import MessagePath
+from verifier.traces.messages.reading import Values
 from verifier.traces.trace import Loss
 
 LATEST = 4 * 10**18
 """Nanoseconds since 1970, in 2096. Later times are garbage; earlier ones can be subtracted from
 one another in 64 bits."""
 
+Places: TypeAlias = npt.NDArray[np.uint32]
+"""Of messages among all of a log; 32 bits, since there are many of them."""
 
-@final
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """One stream of messages and how they are written.
-
-    encoding: of the messages: `cdr` (ROS 2), `ros1`, `json`, or what the file says.
-    schema_encoding: of `schema`: `ros2msg`, `ros2idl`, `ros1msg`, `jsonschema`, ...
-    """
-
-    topic: str
-    message_type: str
-    encoding: str
-    schema_encoding: str
-    schema: bytes
+Progress: TypeAlias = Callable[[int, int], None]
+"""Told now and then how many bytes of how many were read."""
 
 
 @final
@@ -33,21 +30,22 @@ class Channel:
 class Messages:
     """The messages of one channel, in the order of the file.
 
-    times: (count,) log times in nanoseconds, of all messages. places: (count,) their places among
-    all messages of the log. payloads: (k,) the first k of them, k <= count; all where the channel
-    was asked for.
+    count: how many there are. times: (count,) log times in nanoseconds, and places: (count,)
+    their places among all messages of the log; both empty where the channel was not asked for.
+    values: what was read of the first of them; None where nothing was.
     """
 
     channel: Channel
+    count: int
     times: Integers
-    places: Integers
-    payloads: tuple[bytes, ...]
+    places: Places
+    values: Values | None
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class MessageLog:
-    """A log of messages: MCAP, or a ROS bag."""
+    """A log of messages: MCAP, a ROS bag, or ULog."""
 
     source: str
     kind: str
@@ -88,11 +86,19 @@ LogFile: TypeAlias = MessageLog | Sheet
 @final
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Which payloads a reader shall keep: of `topics` (None: all), `limit` bytes each."""
+    """What a reader shall read.
 
-    topics: frozenset[str] | None
+    paths: of which topics, and what in their messages; None: all that there is. limit: the
+    messages' bytes of a channel after which no more values are read, only times.
+    """
+
+    paths: Mapping[str, tuple[MessagePath, ...]] | None
     limit: int | None = None
 
     def has(self, topic: str) -> bool:
-        """Whether payloads of the topic are wanted."""
-        return self.topics is None or topic in self.topics
+        """Whether anything of the topic is wanted."""
+        return self.paths is None or topic in self.paths
+
+    def of(self, topic: str) -> tuple[MessagePath, ...] | None:
+        """What is wanted in the topic's messages; None: all that there is."""
+        return None if self.paths is None else self.paths[topic]

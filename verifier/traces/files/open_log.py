@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from spec_schema.diagnostics import SpecError
 from verifier.traces.faults import file_fault
 from verifier.traces.files.bag1_file import is_bag1, read_bag1
 from verifier.traces.files.bag2_file import is_sqlite, read_bag2
 from verifier.traces.files.csv_file import is_csv, read_csv
-from verifier.traces.files.log import LogFile, MessageLog, Messages, Wanted
+from verifier.traces.files.log import LogFile, MessageLog, Messages, Progress, Wanted
 from verifier.traces.files.mcap_file import find_attachment, is_mcap, read_mcap
 from verifier.traces.trace import Loss
 
@@ -18,10 +20,11 @@ HEAD_BYTES = 1 << 16
 _KINDS = "MCAP, ROS 1 bag, ROS 2 bag (folder or .db3), CSV with a header line"
 
 
-def open_log(path: Path, wanted: Wanted) -> LogFile:
+def open_log(path: Path, wanted: Wanted, progress: Progress | None = None) -> LogFile:
     """The log's messages or columns; raises SpecError V301, V302 or V309."""
+    tell = progress or (lambda _done, _whole: None)
     try:
-        return _read_folder(path, wanted) if path.is_dir() else _read_file(path, wanted)
+        return _read_folder(path, wanted, tell) if path.is_dir() else _read_file(path, wanted, tell)
     except OSError as error:
         raise _unreadable(path, error) from error
 
@@ -51,40 +54,42 @@ def _head(path: Path) -> bytes:
         return file.read(HEAD_BYTES)
 
 
-def _read_file(path: Path, wanted: Wanted) -> LogFile:
+def _read_file(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
     head = _head(path)
     if not head:
         raise file_fault(path, "V302", "the file is empty")
     if is_mcap(head):
-        return read_mcap(path, wanted)
+        return read_mcap(path, wanted, tell)
     if is_bag1(head):
-        return read_bag1(path, wanted)
+        return read_bag1(path, wanted, tell)
     if is_sqlite(head):
-        return read_bag2(path, wanted)
+        return read_bag2(path, wanted, tell)
     if is_csv(head):
         return read_csv(path)
     raise file_fault(path, "V302", "this is no log that specc knows", f"known: {_KINDS}")
 
 
-def _read_folder(path: Path, wanted: Wanted) -> LogFile:
+def _read_folder(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
     """A folder of MCAP files that belong together, or a ROS 2 bag."""
     # An empty part, as a recorder leaves when it is killed, holds nothing to read.
     parts = sorted(part for part in path.glob("*.mcap") if part.stat().st_size > 0)
     if parts:
-        return _joined(path, [read_mcap(part, wanted) for part in parts])
+        return _joined(path, [read_mcap(part, wanted, tell) for part in parts])
     if (path / "metadata.yaml").is_file():
-        return read_bag2(path, wanted)
+        return read_bag2(path, wanted, tell)
     databases = sorted(path.glob("*.db3"))
     if databases:
-        return _joined(path, [read_bag2(part, wanted) for part in databases])
+        return _joined(path, [read_bag2(part, wanted, tell) for part in databases])
     raise file_fault(path, "V302", "the folder holds no log that specc knows", f"known: {_KINDS}")
 
 
 def _joined(path: Path, logs: Sequence[MessageLog]) -> MessageLog:
     streams: list[Messages] = []
     for log in logs:
-        before = sum(stream.times.size for stream in streams)
-        streams += [replace(stream, places=stream.places + before) for stream in log.streams]
+        before = sum(stream.count for stream in streams)
+        streams += [
+            replace(stream, places=stream.places + np.uint32(before)) for stream in log.streams
+        ]
     return MessageLog(
         source=str(path),
         kind=f"folder of {logs[0].kind}",

@@ -1,16 +1,51 @@
-"""Messages gathered channel by channel while a file is read."""
+"""Messages taken channel by channel while a file is read, and decoded in batches."""
 
+import mmap
+from array import array
 from collections.abc import Hashable
 from typing import Generic, TypeVar, final
 
 import numpy as np
 
-from verifier.traces.files.log import LATEST, Channel, MessageLog, Messages, Wanted
+from verifier.traces.files.log import LATEST, MessageLog, Messages, Wanted
+from verifier.traces.messages.channel import Channel
+from verifier.traces.messages.reading import Reader
 from verifier.traces.trace import Loss
 
+BATCH_BYTES = 1 << 22
+"""Messages of one channel are decoded when so many bytes of them are held."""
+
+MOST_WAITING = 1 << 26
+"""Bytes of messages that are held for a channel whose description has not been seen yet."""
+
 UNBOUNDED = 1 << 62
+_MOST_PLACES = (1 << 32) - 1
 
 Key = TypeVar("Key", bound=Hashable)
+
+
+@final
+class _Stream:
+    """One channel's messages. They are told apart by whether the channel is described yet."""
+
+    __slots__ = ("channel", "count", "held", "payloads", "places", "reader", "room", "times")
+
+    def __init__(self) -> None:
+        self.channel: Channel | None = None
+        self.reader: Reader | None = None
+        self.count = 0
+        self.times = array("q")
+        self.places = array("I")
+        self.payloads: list[bytes] = []
+        self.held = 0
+        self.room = MOST_WAITING
+
+    def digest(self) -> None:
+        """Decodes what is held."""
+        if self.reader and self.payloads:
+            self.reader.feed(self.payloads)
+        self.payloads = []
+        self.held = 0
 
 
 @final
@@ -22,53 +57,86 @@ class Gathering(Generic[Key]):
 
     def __init__(self, wanted: Wanted) -> None:
         self._wanted = wanted
-        self._channels: dict[Key, Channel] = {}
-        self._times: dict[Key, list[int]] = {}
-        self._places: dict[Key, list[int]] = {}
-        self.count = 0
-        self._payloads: dict[Key, list[bytes]] = {}
-        self._room: dict[Key, int] = {}
+        self._streams: dict[Key, _Stream] = {}
+        self._closed: list[_Stream] = []
         self._losses: dict[tuple[str, str], int] = {}
+        self.count = 0
         self.notes: list[str] = []
 
     def declare(self, key: Key, channel: Channel) -> None:
-        """A channel; declaring it again changes nothing but its description."""
-        self._channels[key] = channel
-        room = self._wanted.limit or UNBOUNDED
-        self._room.setdefault(key, room if self._wanted.has(channel.topic) else 0)
+        """A channel. One that is declared anew with another description begins anew."""
+        stream = self._streams.get(key)
+        if stream is None:
+            stream = self._streams[key] = _Stream()
+        elif stream.channel == channel:
+            return
+        elif stream.channel is not None and stream.count:
+            self._closed.append(stream)
+            stream = self._streams[key] = _Stream()
+        stream.channel = channel
+        if self._wanted.has(channel.topic):
+            stream.reader = Reader(channel, self._wanted.of(channel.topic))
+            stream.room = (self._wanted.limit or UNBOUNDED) - stream.held
+        else:
+            stream.reader, stream.room = None, 0
+            stream.times, stream.places, stream.payloads = array("q"), array("I"), []
 
-    def add(self, key: Key, log_time: int, payload: bytes) -> None:
-        """A message at `log_time` >= 0 nanoseconds."""
+    def add(
+        self, key: Key, log_time: int, data: bytes | mmap.mmap, begin: int, end: int
+    ) -> None:
+        """A message at `log_time` >= 0 nanoseconds, whose payload is `data[begin:end]`."""
         if log_time > LATEST:
             self.lose("impossible log time", "after the year 2096")
             return
-        self._times.setdefault(key, []).append(log_time)
-        self._places.setdefault(key, []).append(self.count)
+        stream = self._streams.get(key)
+        if stream is None:
+            stream = self._streams[key] = _Stream()
         self.count += 1
-        room = self._room.get(key, UNBOUNDED)
-        if room > 0:
-            self._payloads.setdefault(key, []).append(payload)
-            self._room[key] = room - len(payload)
+        stream.count += 1
+        if stream.channel is not None and stream.reader is None:
+            return
+        stream.times.append(log_time)
+        stream.places.append(min(self.count, _MOST_PLACES))
+        if stream.room > 0:
+            size = end - begin
+            stream.payloads.append(data[begin:end])
+            stream.held += size
+            stream.room -= size
+            if stream.held >= BATCH_BYTES and stream.reader:
+                stream.digest()
+
+    def _all(self) -> list[_Stream]:
+        """The open channels' messages; those of no channel are lost."""
+        for key, stream in self._streams.items():
+            if stream.channel is None:
+                detail = f"channel {key} is not declared"
+                self.lose("messages without a channel", detail, stream.count)
+        return [stream for stream in self._streams.values() if stream.channel is not None]
 
     def lose(self, cause: str, detail: str, count: int = 1) -> None:
         """Something that could not be read."""
         self._losses[cause, detail] = self._losses.get((cause, detail), 0) + count
 
+    def begin_anew(self) -> None:
+        """From here on the channels' numbers mean others."""
+        self._closed += self._all()
+        self._streams = {}
+
     def finished(self, source: str, kind: str) -> MessageLog:
         """The log, its channels in the order in which they were declared."""
-        for key, times in self._times.items():
-            if key not in self._channels:
-                self.lose(
-                    "messages without a channel", f"channel {key} is not declared", len(times)
+        described: list[Messages] = []
+        for stream in (*self._closed, *self._all()):
+            stream.digest()
+            if stream.channel is not None:
+                described.append(
+                    Messages(
+                        channel=stream.channel,
+                        count=stream.count,
+                        times=np.array(stream.times, dtype=np.int64),
+                        places=np.array(stream.places, dtype=np.uint32),
+                        values=stream.reader.finished() if stream.reader else None,
+                    )
                 )
-        streams = tuple(
-            Messages(
-                channel,
-                np.array(self._times.get(key, []), dtype=np.int64),
-                np.array(self._places.get(key, []), dtype=np.int64),
-                tuple(self._payloads.get(key, ())) if self._wanted.has(channel.topic) else (),
-            )
-            for key, channel in self._channels.items()
-        )
         losses = tuple(Loss(cause, n, detail) for (cause, detail), n in self._losses.items())
-        return MessageLog(source, kind, streams, losses, tuple(dict.fromkeys(self.notes)))
+        notes = tuple(dict.fromkeys(self.notes))
+        return MessageLog(source, kind, tuple(described), losses, notes)

@@ -50,3 +50,16 @@ def column(cells: Sequence[Cell]) -> Column:
         return Column(np.full(len(cells), np.nan), texts)
     numbers = [np.nan if cell is None else float(cell) for cell in cells]
     return Column(np.array(numbers, dtype=np.float64), None)
+
+
+def joined(parts: Sequence[Column]) -> Column:
+    """The parts, one after the other; numbers are written as text where any part has text."""
+    numbers = np.concatenate([np.zeros(0), *(part.numbers for part in parts)])
+    if all(part.texts is None for part in parts):
+        return Column(numbers, None)
+    texts = (text for part in parts for text in (part.texts or _written(part.numbers)))
+    return Column(numbers, tuple(texts))
+
+
+def _written(numbers: Array) -> list[str | None]:
+    return [f"{number:g}" if np.isfinite(number) else None for number in numbers.tolist()]

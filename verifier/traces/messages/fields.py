@@ -4,11 +4,12 @@ JSON messages have no binding definition, so their shape is taken from the first
 same form as a definition.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import final
 
 from verifier.traces.faults import nearest_help
-from verifier.traces.files.log import Channel, Messages
+from verifier.traces.messages.channel import Channel
 from verifier.traces.messages.definitions import (
     DefinitionError,
     Many,
@@ -58,13 +59,15 @@ class StampLeaves:
     nanoseconds: Steps
 
 
-def shape(stream: Messages) -> Struct:
-    """The fields of a channel's messages; raises FieldError V307 or V311."""
-    channel = stream.channel
+def shape(channel: Channel, examples: Sequence[bytes]) -> Struct:
+    """The fields of a channel's messages; raises FieldError V307 or V311.
+
+    examples: the first messages, which show it where nothing defines it.
+    """
     if channel.encoding in {"cdr", "ros1"}:
         return _defined(channel)
     if channel.encoding == "json":
-        return _shown(stream)
+        return _shown(channel, examples)
     message = f"messages of {channel.topic} are encoded as {channel.encoding!r}"
     raise FieldError("V307", message, "specc reads cdr (ROS 2), ros1 and json")
 
@@ -127,9 +130,9 @@ def _defined(channel: Channel) -> Struct:
         raise FieldError("V311", message, "record again with the message definitions") from error
 
 
-def _shown(stream: Messages) -> Struct:
+def _shown(channel: Channel, examples: Sequence[bytes]) -> Struct:
     fields: dict[str, Node] = {}
-    for payload in stream.payloads[:EXAMPLES]:
+    for payload in examples[:EXAMPLES]:
         try:
             message = parse(payload)
         except ValueError:
@@ -137,7 +140,7 @@ def _shown(stream: Messages) -> Struct:
         node = _shape_of(message)
         if isinstance(node, Struct):
             fields |= dict(node.fields)
-    return Struct(stream.channel.message_type or "message", tuple(fields.items()))
+    return Struct(channel.message_type or "message", tuple(fields.items()))
 
 
 def _shape_of(message: Json) -> Node:

@@ -1,8 +1,10 @@
 """Where the fields of one CDR or ROS 1 message stand, found by walking it along its definition.
 
 CDR: OMG formal/02-06-51, 15.3, in the little- and big-endian encapsulations 0x0001 and 0x0000;
-a number is aligned to its size, counted from the end of the four encapsulation bytes. ROS 1
-packs everything without padding, little-endian.
+a number is aligned to its size, counted from the end of the four encapsulation bytes. XCDR2 of
+final types (OMG DDS-XTypes 1.3, 7.4.3), encapsulations 0x0007 and 0x0006, aligns to four bytes at
+most, and puts the size in bytes before lists of anything but numbers. ROS 1 and ULog pack
+everything without padding, little-endian.
 """
 
 import struct
@@ -25,15 +27,30 @@ class WireError(Exception):
 @final
 @dataclass(frozen=True, slots=True)
 class Packing:
-    """How a message's bytes are laid out after its first `head` bytes."""
+    """How a message's bytes are laid out after its first `head` bytes.
+
+    align: numbers stand at multiples of their size, but of no more than this. sized: lists of
+    anything but numbers have their size in bytes before them.
+    """
 
     head: int
-    aligned: bool
+    align: int
+    sized: bool
     order: str
 
+    @property
+    def aligned(self) -> bool:
+        """Whether this is CDR, of either version."""
+        return self.align > 1
 
-ROS1 = Packing(0, aligned=False, order="<")
-_CDR = {b"\0\0": Packing(4, aligned=True, order=">"), b"\0\1": Packing(4, aligned=True, order="<")}
+
+PACKED = Packing(0, align=1, sized=False, order="<")
+_CDR = {
+    b"\0\0": Packing(4, align=8, sized=False, order=">"),
+    b"\0\1": Packing(4, align=8, sized=False, order="<"),
+    b"\0\6": Packing(4, align=4, sized=True, order=">"),
+    b"\0\7": Packing(4, align=4, sized=True, order="<"),
+}
 
 
 @final
@@ -61,11 +78,11 @@ class Layout:
 
 def packing(payload: bytes, encoding: str) -> Packing:
     """How the message is packed; raises WireError for an encapsulation other than plain CDR."""
-    if encoding == "ros1":
-        return ROS1
+    if encoding != "cdr":
+        return PACKED
     found = _CDR.get(payload[:2])
     if found is None or len(payload) < found.head:
-        raise WireError(f"encapsulation 0x{payload[:2].hex()} is not plain CDR")
+        raise WireError(f"encapsulation 0x{payload[:2].hex()} is not plain CDR or XCDR2")
     return found
 
 
@@ -125,6 +142,8 @@ class _Walker:
         self.found(leaves, Slot(start, "", letters))
 
     def many(self, node: Many, leaves: Leaves, depth: int) -> None:
+        if self.packing.sized and not isinstance(node.item, Number):
+            self.length()
         count = self.length() if node.count is None else node.count
         if count > len(self.payload):
             raise WireError(f"it claims a sequence of {count} items in {len(self.payload)} bytes")
@@ -155,7 +174,7 @@ class _Walker:
 
     def align(self, size: int) -> None:
         if self.packing.aligned:
-            head = self.packing.head
+            head, size = self.packing.head, min(size, self.packing.align)
             self.position = head + (self.position - head + size - 1) // size * size
 
     def advance(self, size: int) -> int:

@@ -5,7 +5,7 @@ from itertools import islice
 
 from verifier.traces.messages.definitions import Many, Node, Struct
 from verifier.traces.messages.fields import is_quaternion, is_stamp
-from verifier.traces.messages.paths import Steps
+from verifier.traces.messages.paths import DERIVED, MessagePath, Steps, path_text
 
 MOST_FIELDS = 400
 MOST_ITEMS = 8
@@ -22,6 +22,15 @@ def list_quaternions(root: Struct) -> tuple[Steps, ...]:
     """Where quaternions stand among the first fields of a message."""
     nodes = islice(_walk(root, (), DEEPEST), MOST_FIELDS)
     return tuple(steps for steps, node in nodes if is_quaternion(node))
+
+
+def all_paths(root: Struct, topic: str) -> tuple[MessagePath, ...]:
+    """The paths to the leaves of a message, and to the angles of its quaternions."""
+    paths = [MessagePath(path_text(topic, steps), topic, steps, "") for steps in list_fields(root)]
+    for steps in list_quaternions(root):
+        start = path_text(topic, steps)
+        paths += [MessagePath(f"{start}.@{name}", topic, steps, name) for name in DERIVED]
+    return tuple(paths)
 
 
 def _walk(node: Node, above: Steps, depth: int) -> Iterator[tuple[Steps, Node]]:

@@ -5,7 +5,6 @@ message of a group is walked field by field (`layout`), and all others that have
 at the same places are read with one strided gather per value.
 """
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import final
@@ -19,7 +18,6 @@ from verifier.traces.messages.definitions import Struct
 from verifier.traces.messages.layout import Layout, Leaves, Slot, WireError, find_layout
 from verifier.traces.messages.paths import Steps
 
-SLAB_BYTES = 1 << 25
 # Beyond this many layouts of one size, looking for others alike costs more than it saves.
 MOST_LAYOUTS = 64
 
@@ -29,7 +27,7 @@ def decode(
 ) -> Decoded:
     """The asked-for leaves in all messages; one that can't be walked is marked not readable.
 
-    encoding: `cdr` or `ros1`.
+    encoding: `cdr`, `ros1` or `ulog`.
     """
     sink = _Sink(
         numbers=np.full((len(asked), len(payloads)), np.nan),
@@ -38,21 +36,23 @@ def decode(
         reasons=[],
     )
     leaves: Leaves = tuple(enumerate(asked))
-    for slab in _slabs(payloads, encoding):
-        left = np.arange(slab.rows.size)
+    batch = _batch(payloads)
+    for group in _groups(batch, encoding):
+        left = group.rows
         layouts = 0
         while left.size:
             try:
-                layout = find_layout(slab.payload(left[0]), encoding, root, leaves)
+                layout = find_layout(payloads[int(left[0])], encoding, root, leaves)
             except WireError as error:
-                sink.readable[slab.rows[left[0]]] = False
+                sink.readable[left[0]] = False
                 sink.reasons.append(str(error))
                 left = left[1:]
                 continue
             layouts += 1
-            alike = slab.alike(left, layout) if layouts <= MOST_LAYOUTS else left == left[0]
+            alike = group.alike(left, layout) if layouts <= MOST_LAYOUTS else left == left[0]
+            chosen = left if alike.all() else left[alike]
             for leaf, slot in layout.slots.items():
-                _take(slab, left[alike], leaf, slot, sink)
+                _take(group, chosen, leaf, slot, sink)
             left = left[~alike]
     columns = (
         Column(numbers, tuple(sink.texts[leaf]) if leaf in sink.texts else None)
@@ -64,7 +64,7 @@ def decode(
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Sink:
-    """Where decoded values go while the slabs are worked through."""
+    """Where decoded values go while the groups are worked through."""
 
     numbers: Array
     texts: dict[int, list[str | None]]
@@ -74,22 +74,34 @@ class _Sink:
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
-class _Slab:
-    """Rows (k,) of `payloads` of one size and byte order; their bytes as block (k, size)."""
+class _Batch:
+    """Messages, one behind the other: where each begins (T,), and its size (T,) in bytes."""
 
     payloads: Sequence[bytes]
+    data: bytes
+    begins: Integers
+    sizes: Integers
+
+    def gather(self, rows: Integers, offset: int, kind: str) -> npt.NDArray[np.generic]:
+        """The numbers of numpy's `kind` at the offset in the messages `rows` (c,)."""
+        dtype = np.dtype(kind)
+        # Every place in the bytes as a number, whatever its alignment; only `rows` are looked at.
+        places = len(self.data) - dtype.itemsize + 1
+        every = np.ndarray((max(places, 0),), dtype=dtype, buffer=self.data, strides=(1,))
+        return every[self.begins[rows] + offset]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Group:
+    """Rows (k,) of a batch, of messages of one size and byte order."""
+
+    batch: _Batch
     rows: Integers
-    block: npt.NDArray[np.uint8]
     order: str
 
-    def payload(self, index: int) -> bytes:
-        return self.payloads[int(self.rows[index])]
-
-    def gather(self, chosen: Integers, slot: Slot) -> npt.NDArray[np.generic]:
-        """The numbers at the slot in the chosen messages (c,)."""
-        raw = self.block[:, slot.offset : slot.offset + slot.length]
-        raw = raw if chosen.size == len(raw) else raw[chosen]
-        return np.ascontiguousarray(raw).view(f"{self.order}{slot.code}")[:, 0]
+    def gather(self, rows: Integers, slot: Slot) -> npt.NDArray[np.generic]:
+        return self.batch.gather(rows, slot.offset, f"{self.order}{slot.code}")
 
     def alike(self, left: Integers, layout: Layout) -> Booleans:
         """Which of the messages `left` have the layout's lengths at its places."""
@@ -99,28 +111,34 @@ class _Slab:
         return alike
 
 
-def _slabs(payloads: Sequence[bytes], encoding: str) -> Iterator[_Slab]:
-    """Messages of one size and encapsulation together, at most `SLAB_BYTES` of them."""
-    head = 2 if encoding == "cdr" else 0
-    groups: defaultdict[tuple[int, bytes], list[int]] = defaultdict(list)
-    for row, payload in enumerate(payloads):
-        groups[len(payload), payload[:head]].append(row)
-    for (size, start), rows in groups.items():
-        count = max(1, SLAB_BYTES // max(size, 1))
-        for begin in range(0, len(rows), count):
-            some = rows[begin : begin + count]
-            block = np.frombuffer(b"".join([payloads[row] for row in some]), dtype=np.uint8)
-            order = ">" if start == b"\0\0" else "<"
-            yield _Slab(payloads, np.array(some), block.reshape(len(some), size), order)
+def _batch(payloads: Sequence[bytes]) -> _Batch:
+    sizes = np.fromiter(map(len, payloads), dtype=np.int64, count=len(payloads))
+    return _Batch(payloads, b"".join(payloads), np.cumsum(sizes) - sizes, sizes)
 
 
-def _take(slab: _Slab, chosen: Integers, leaf: int, slot: Slot, sink: _Sink) -> None:
-    rows = slab.rows[chosen]
+def _groups(batch: _Batch, encoding: str) -> Iterator[_Group]:
+    """Messages of one size and encapsulation together."""
+    kinds = batch.sizes << 16
+    if encoding == "cdr":
+        headed = np.flatnonzero(batch.sizes >= 2)
+        kinds[headed] += batch.gather(headed, 0, ">u2").astype(np.int64)
+    for kind in np.unique(kinds):
+        rows = np.flatnonzero(kinds == kind)
+        # Of the encapsulations that are read, the odd ones are little-endian.
+        big = encoding == "cdr" and kind % 2 == 0
+        yield _Group(batch, rows, ">" if big else "<")
+
+
+def _take(group: _Group, rows: Integers, leaf: int, slot: Slot, sink: _Sink) -> None:
     if slot.code:
         with np.errstate(invalid="ignore"):  # a signalling NaN is a NaN
-            sink.numbers[leaf, rows] = slab.gather(chosen, slot)
+            sink.numbers[leaf, rows] = group.gather(rows, slot)
         return
-    texts = sink.texts.setdefault(leaf, [None] * len(slab.payloads))
-    for row in rows:
-        raw = slab.payloads[row][slot.offset : slot.offset + slot.length]
-        texts[row] = raw.decode("utf-8", errors="replace")
+    payloads = group.batch.payloads
+    texts = sink.texts.setdefault(leaf, [None] * len(payloads))
+    shared: dict[bytes, str] = {}
+    for row in rows.tolist():
+        raw = payloads[row][slot.offset : slot.offset + slot.length]
+        if raw not in shared:
+            shared[raw] = raw.decode("utf-8", errors="replace")
+        texts[row] = shared[raw]

@@ -1,0 +1,145 @@
+"""The values at given paths in the messages of one channel, decoded batch by batch."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans, Integers
+from verifier.traces.messages import json_messages, wire
+from verifier.traces.messages.channel import Channel
+from verifier.traces.messages.columns import Column, Decoded, joined
+from verifier.traces.messages.definitions import Struct
+from verifier.traces.messages.fields import FieldError, StampLeaves, check, shape, stamp_leaves
+from verifier.traces.messages.leaves import all_paths
+from verifier.traces.messages.paths import MessagePath, Steps
+from verifier.traces.messages.quaternions import angle
+
+LATEST_SECONDS = 4e9
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Values:
+    """What was read of the first k messages of a channel.
+
+    readable: (k,) which of them could be decoded at all; `reason` says what was wrong with the
+    first that could not. stamps: of the r readable ones, (r,) nanoseconds of the sensor, 0 where
+    it gave none; None where the messages have no stamp. columns: (r,) each, by the path's text.
+    faults: why a path finds no number here, by the path's text; all of them where the messages
+    can't be read at all, which `fault` says.
+    """
+
+    readable: Booleans
+    reason: str
+    stamps: Integers | None
+    columns: Mapping[str, Column]
+    faults: Mapping[str, FieldError]
+    fault: FieldError | None
+
+
+@final
+class Reader:
+    """Takes the messages of one channel, batch by batch, and keeps only the values asked for."""
+
+    def __init__(self, channel: Channel, paths: Sequence[MessagePath] | None) -> None:
+        self._channel = channel
+        self._wanted = paths
+        self._paths: list[MessagePath] = []
+        self._root: Struct | None = None
+        self._stamp: StampLeaves | None = None
+        self._asked: list[Steps] = []
+        self._columns: dict[str, list[Column]] = {}
+        self._stamps: list[Integers] = []
+        self._readable: list[Booleans] = []
+        self._reason = ""
+        self._faults: dict[str, FieldError] = {}
+        self._fault: FieldError | None = None
+
+    def feed(self, payloads: Sequence[bytes]) -> None:
+        """The next messages."""
+        if self._root is None and self._fault is None:
+            self._open(payloads)
+        if self._root is None:
+            self._readable.append(np.zeros(len(payloads), dtype=np.bool_))
+            return
+        decoded = _decode(self._channel, payloads, self._root, self._asked)
+        self._readable.append(decoded.readable)
+        self._reason = self._reason or decoded.reason
+        rows = np.flatnonzero(decoded.readable)
+        whole = rows.size == len(payloads)
+        columns = decoded.columns if whole else tuple(one.rows(rows) for one in decoded.columns)
+        found = dict(zip(self._asked, columns, strict=True))
+        for path in self._paths:
+            self._columns[path.text].append(_value(path, found))
+        if self._stamp:
+            seconds, rest = found[self._stamp.seconds], found[self._stamp.nanoseconds]
+            self._stamps.append(_stamps(seconds, rest))
+
+    def finished(self) -> Values:
+        """All that was read; the reader keeps nothing."""
+        if self._root is None and self._fault is None:
+            self._open(())
+        columns = {}
+        for path in self._paths:
+            columns[path.text] = joined(self._columns.pop(path.text))
+        empty = [np.zeros(0, dtype=np.int64)]
+        return Values(
+            readable=np.concatenate([np.zeros(0, dtype=np.bool_), *self._readable]),
+            reason=self._reason,
+            stamps=np.concatenate(empty + self._stamps) if self._stamp else None,
+            columns=columns,
+            faults=self._faults,
+            fault=self._fault,
+        )
+
+    def _open(self, examples: Sequence[bytes]) -> None:
+        """Finds the shape of the messages, and which of the paths lead to numbers in it."""
+        try:
+            root = shape(self._channel, examples)
+        except FieldError as error:
+            self._fault = error
+            self._faults = {path.text: error for path in self._wanted or ()}
+            return
+        self._root = root
+        wanted = all_paths(root, self._channel.topic) if self._wanted is None else self._wanted
+        for path in wanted:
+            try:
+                check(root, path)
+            except FieldError as error:
+                self._faults[path.text] = error
+            else:
+                self._paths.append(path)
+        self._stamp = stamp_leaves(root)
+        self._asked = list(dict.fromkeys(leaf for path in self._paths for leaf in path.leaves))
+        if self._stamp:
+            stamp = (self._stamp.seconds, self._stamp.nanoseconds)
+            self._asked += [leaf for leaf in stamp if leaf not in self._asked]
+        self._columns = {path.text: [] for path in self._paths}
+
+
+def _decode(
+    channel: Channel, payloads: Sequence[bytes], root: Struct, asked: Sequence[Steps]
+) -> Decoded:
+    if channel.encoding == "json":
+        return json_messages.decode(payloads, asked)
+    return wire.decode(payloads, channel.encoding, root, asked)
+
+
+def _value(path: MessagePath, found: Mapping[Steps, Column]) -> Column:
+    if not path.derived:
+        return found[path.steps]
+    x, y, z, w = (found[leaf].numbers for leaf in path.leaves)
+    return Column(angle(path.derived, x, y, z, w), None)
+
+
+def _stamps(seconds: Column, nanoseconds: Column) -> Integers:
+    whole = _integers(seconds.numbers)
+    return whole * 1_000_000_000 + _integers(nanoseconds.numbers)
+
+
+def _integers(numbers: Array) -> Integers:
+    """Whole numbers; 0 for what is none, or is too large for seconds."""
+    safe = np.where(np.isfinite(numbers) & (np.abs(numbers) < LATEST_SECONDS), numbers, 0.0)
+    return safe.astype(np.int64)
