@@ -1,4 +1,4 @@
-"""From a drawing to a design: what lies inside what, what is impossible, and what is missing."""
+"""From a drawing to a design: region within region, completed by what theory says is missing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,39 +7,20 @@ from typing import Final, final
 import numpy as np
 
 from compiler.declare import Declarations
-from compiler.sketch.algebra import with_constants
 from compiler.sketch.design import Design, Family, Node, Region, Ridge, Ring
 from compiler.sketch.drawing import Drawing, Orbit, Point
 from compiler.sketch.frame import Frame, SketchRefusedError, frame_of
 from compiler.sketch.index import SWAPPED, Border, Item, Sort, completed, index_of
-from compiler.sketch.polygons import (
-    cross_each_other,
-    crosses_itself,
-    distance_to,
-    encloses,
-    sees_all,
-    viewpoint,
-)
+from compiler.sketch.loops import Loop, loops_of
+from compiler.sketch.polygons import encloses, sees_all, viewpoint
+from compiler.sketch.refusals import refuse_coincidences, refuse_outside
 from compiler.sketch.separatrices import ridge_of
 from runtime.arrays import Array
-from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.tree import Expr
 from spec_schema.places import Path
 
-TOUCHING: Final = 1e-3
-"""Half widths of the frame: features closer than this are in the same place."""
 INSERTED: Final = 0.6
 """Where an orbit that theory adds runs: this share of the way out to the next one."""
-
-
-@final
-@dataclass(frozen=True, eq=False, slots=True)
-class _Loop:
-    """An orbit in the frame, and the index of the orbit right around it (-1: none)."""
-
-    orbit: Orbit
-    vertices: Array
-    parent: int
 
 
 def compose(drawing: Drawing, declared: Declarations) -> Design:
@@ -49,11 +30,11 @@ def compose(drawing: Drawing, declared: Declarations) -> Design:
         SketchRefusedError: no field of the plane can look like this, or none that we can build.
     """
     frame = frame_of(drawing, declared)
-    _refuse_outside(drawing, frame, declared)
-    loops = _loops(drawing, frame)
+    refuse_outside(drawing, frame, declared)
+    loops = loops_of(drawing, frame)
     nodes = [Node(point, frame.spot(point.at)) for point in drawing.points]
     ridges = [ridge_of(line, frame) for line in drawing.lines]
-    _refuse_coincidences(nodes, ridges, loops, frame)
+    refuse_coincidences(nodes, ridges, loops, frame)
     builder = _Builder(frame, tuple(loops), tuple(nodes), tuple(ridges))
     return Design(drawing, frame, builder.region(-1, None), drawing.arrows)
 
@@ -64,7 +45,7 @@ class _Builder:
     """What the parts of a design are put together from."""
 
     frame: Frame
-    loops: tuple[_Loop, ...]
+    loops: tuple[Loop, ...]
     nodes: tuple[Node, ...]
     ridges: tuple[Ridge, ...]
 
@@ -163,97 +144,6 @@ class _Builder:
         return sorts | {_sort(loop.orbit) for loop in children}
 
 
-def _refuse_outside(drawing: Drawing, frame: Frame, declared: Declarations) -> None:
-    """Features outside of the domain, and times or rates that are not positive."""
-    for path, pair in drawing.spots:
-        for name, expr in zip(drawing.over, pair, strict=True):
-            state = declared.variable(name)
-            values = _values(expr, frame)
-            if not (state.low <= min(values) and max(values) <= state.high):
-                message = f"this place is outside the domain of '{name}' for some controls"
-                remedy = "move it inside, or widen the domain"
-                raise SketchRefusedError("S264", path, message, remedy)
-    for orbit in drawing.orbits:
-        named = [("times", i) for i in range(len(orbit.times))] + [("period",), ("speed",)]
-        paces: list[Expr | None] = [*orbit.times, orbit.period, orbit.speed]
-        for steps, pace in zip(named, paces, strict=True):
-            if pace is not None and not min(_values(pace, frame)) > 0.0:
-                message = "this is not positive for some controls"
-                remedy = "write a time that is always above 0"
-                raise SketchRefusedError("S261", (*orbit.path, *steps), message, remedy)
-
-
-def _values(expr: Expr, frame: Frame) -> list[float]:
-    return [evaluate(with_constants(expr, frame.constants), sample) for sample in frame.samples]
-
-
-def _loops(drawing: Drawing, frame: Frame) -> list[_Loop]:
-    """The orbits in the frame, with what is right around each."""
-    curves = [_still(orbit, frame) for orbit in drawing.orbits]
-    for orbit, curve in zip(drawing.orbits, curves, strict=True):
-        if crosses_itself(curve):
-            message = f"'{orbit.name}' crosses itself, and a trajectory never does"
-            raise SketchRefusedError("S266", orbit.path, message, "sort its vertices")
-    for i, first in enumerate(curves):
-        for j in range(i):
-            if cross_each_other(first, curves[j]):
-                names = f"'{drawing.orbits[j].name}' and '{drawing.orbits[i].name}'"
-                message = f"{names} cross: two trajectories would go through one point"
-                remedy = "draw one of them inside or beside the other"
-                raise SketchRefusedError("S266", drawing.orbits[i].path, message, remedy)
-    return [
-        _Loop(orbit, curve, _parent(i, curves))
-        for i, (orbit, curve) in enumerate(zip(drawing.orbits, curves, strict=True))
-    ]
-
-
-def _parent(i: int, curves: Sequence[Array]) -> int:
-    around = [j for j, curve in enumerate(curves) if j != i and encloses(curve, curves[i][0])]
-    depth = {j: sum(encloses(other, curves[j][0]) for other in curves) for j in around}
-    return max(around, key=lambda j: depth[j], default=-1)
-
-
-def _still(orbit: Orbit, frame: Frame) -> Array:
-    """The vertices (V, 2) of an orbit, whose shape must not depend on the controls."""
-    spots = [frame.spot(pair) for pair in orbit.through]
-    for i, spot in enumerate(spots):
-        if spot.controls:
-            message = (
-                f"the shape of '{orbit.name}' changes with {', '.join(spot.controls)}: its box "
-                "moves and stretches with the controls, and this vertex does not go along"
-            )
-            remedy = (
-                "place it at a fixed share between the outermost places of the sketch: "
-                "`x2 + 0.3*(x1 - x2)`"
-            )
-            raise SketchRefusedError("S265", (*orbit.path, "through", i), message, remedy)
-    return np.stack([spot.at for spot in spots])
-
-
-def _refuse_coincidences(
-    nodes: Sequence[Node], ridges: Sequence[Ridge], loops: Sequence[_Loop], frame: Frame
-) -> None:
-    """Two points in one place, a point on an orbit, a point that moves across one."""
-    for sample in frame.samples:
-        places = [np.array([evaluate(e, sample) for e in node.spot.exprs]) for node in nodes]
-        for i, (node, at) in enumerate(zip(nodes, places, strict=True)):
-            for other, there in zip(nodes[:i], places[:i], strict=True):
-                if np.linalg.norm(at - there) < TOUCHING:
-                    raise _same_place(node.point, other.point)
-            for loop in loops:
-                inside = encloses(loop.vertices, node.spot.at)
-                on_it = distance_to(loop.vertices, at) < TOUCHING
-                if on_it or encloses(loop.vertices, at) != inside:
-                    raise _on_orbit(node.point, loop.orbit, moves=not on_it)
-    for ridge in ridges:
-        for loop in loops:
-            inner = {encloses(loop.vertices, at) for at in ridge.through}
-            if len(inner) > 1:
-                message = f"'{ridge.line.name}' and '{loop.orbit.name}' cross"
-                remedy = "a separatrix ends before an orbit, or winds onto it: shorten it"
-                raise SketchRefusedError("S266", ridge.line.path, message, remedy)
-
-
 def _item(node: Node, frame: Frame) -> Item:
     way = None
     if node.point.kind == "saddle" and node.point.directions is not None:
@@ -347,16 +237,3 @@ def _not_star_shaped(orbit: Orbit, held: Sequence[Node]) -> SketchRefusedError:
     seen = f"from '{held[0].point.name}' inside" if held else "from any place inside"
     message = f"not all of '{orbit.name}' can be seen {seen}, and only such orbits can be filled"
     return SketchRefusedError("S265", orbit.path, message, "draw it rounder, or move the point")
-
-
-def _same_place(point: Point, other: Point) -> SketchRefusedError:
-    message = f"'{point.name}' and '{other.name}' come to the same place for some controls"
-    remedy = "keep them apart over the domains of the controls"
-    return SketchRefusedError("S266", (*point.path, "at"), message, remedy)
-
-
-def _on_orbit(point: Point, orbit: Orbit, *, moves: bool) -> SketchRefusedError:
-    what = "moves across" if moves else "lies on"
-    message = f"'{point.name}' {what} '{orbit.name}', where nothing ever rests"
-    remedy = "place it inside or outside, for all controls"
-    return SketchRefusedError("S266", (*point.path, "at"), message, remedy)
