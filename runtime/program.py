@@ -8,6 +8,7 @@ The *register* of a program is the vector of everything that its code may read, 
 states (n), controls (p), constants (c). `Program.register` names its entries.
 """
 
+import dataclasses
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import final
@@ -232,13 +233,17 @@ class Binding:
 @final
 @dataclass(frozen=True, slots=True)
 class Fidelity:
-    """What "the robot does this" means: SI tolerances at the horizon, and where it must be seen."""
+    """What "the robot does this" means: SI tolerances at the horizon, and where it must be seen.
+
+    scatter: by how much (SI, standard deviation) single runs may depart beside the tolerance.
+    """
 
     tolerance: dict[str, float]
     horizon: float
     region: dict[str, tuple[float, float]]
     coverage: float
     origin: str
+    scatter: dict[str, float] = dataclasses.field(default_factory=dict)
 
 
 @final

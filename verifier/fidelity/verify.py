@@ -87,7 +87,7 @@ def _fidelity(program: Program) -> Fidelity:
 
 def _judged(program: Program, trace: Trace, fidelity: Fidelity, study: Study) -> Report:
     axes = axes_of(program, study.plan.needs, fidelity)
-    results = results_of(program, fidelity, study, axes)
+    results = results_of(program, fidelity, study)
     windows = study.plan.windows
     inside = merge(np.column_stack([windows.times, windows.times + windows.horizon]))
     required = fidelity.coverage if fidelity.region else 0.0

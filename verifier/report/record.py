@@ -57,6 +57,9 @@ def _variable(result: VariableResult, report: Report) -> dict[str, object]:
         "standing": str(result.standing),
         "tolerance": _number(result.tolerance, unit),
         "horizons": [_horizon(result, figure) for figure in result.horizons],
+        "systematic": _number(result.systematic, unit),
+        "scatter": _number(result.scatter, unit),
+        "allowed_scatter": _number(result.allowed_scatter, unit),
         "mean": _number(result.mean, unit),
         "mean_interval": _interval(result.mean_interval, unit),
         "noise": _noise(result.noise, unit),
@@ -105,6 +108,8 @@ def _region(region: RegionMean, unit: Unit, report: Report) -> dict[str, object]
             }
             for name, (low, high) in region.bounds.items()
         },
+        "moved": None if region.moved is None else _number(region.moved, unit),
+        "hurried": None if region.hurried is None else _number(region.hurried, unit),
         "windows": region.windows,
         "mean": _number(region.mean, unit),
         "interval": _interval(region.interval, unit),

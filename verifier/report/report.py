@@ -59,11 +59,11 @@ class Noise:
 @final
 @dataclass(frozen=True, slots=True)
 class HorizonFigure:
-    """How far measured and predicted are apart after `horizon` seconds, over all windows.
+    """How far measured and predicted are apart after `horizon` seconds.
 
-    rmse: the plain root mean square of measured minus predicted.
-    departure: the same with the contribution of the measurement noise removed; `interval` holds
-    the true one at the report's confidence, and `standing` is where that interval stands.
+    rmse: the plain root mean square over all windows. departure: the same with the contribution
+    of the sensors' noise removed; `interval` holds the true one at the report's confidence, and
+    `standing` is where that interval stands.
     """
 
     horizon: float
@@ -78,13 +78,17 @@ class HorizonFigure:
 @final
 @dataclass(frozen=True, slots=True)
 class RegionMean:
-    """The mean of measured minus predicted at the horizon, over windows of one region.
+    """The mean of measured minus predicted at the horizon, over windows of one part.
 
-    bounds: the region, `low, high` per name, SI. mean is signed: positive where the robot ends
-    above the prediction.
+    bounds: the part, `low, high` per name, SI; empty where there is but one. The mean speaks of
+    windows in which the variable was predicted to move about as far as `moved`, or by `hurried`
+    farther in the last tenth of the horizon than in the first; None where all are alike. mean is
+    signed: positive where the robot ends above the prediction.
     """
 
     bounds: dict[str, tuple[float, float]]
+    moved: float | None
+    hurried: float | None
     windows: int
     mean: float
     interval: Interval
@@ -112,8 +116,12 @@ class VariableResult:
 
     period: of a periodic variable, else 0. horizons: ascending; the last one is declared and
     decides, the others are for information.
+    systematic: at least so much of the error is shown to be no chance, but to come back wherever
+    the robot is in the same situation. scatter: how far single windows lie from the mean of their
+    part, the noise of the sensors taken out; `allowed_scatter` is what the spec allows beside the
+    tolerance.
     mean: the signed mean error at the declared horizon over all windows.
-    regions: cells with enough windows; worst: the one with the largest mean, if any.
+    regions: the parts; worst: the one that departs most surely, if any.
     errors: (W,) measured minus predicted at the declared horizon, NaN where a window has none.
     views: a few windows, in order of time.
     """
@@ -125,6 +133,9 @@ class VariableResult:
     standing: Standing
     noise: Noise
     horizons: tuple[HorizonFigure, ...]
+    systematic: float
+    scatter: float
+    allowed_scatter: float
     mean: float
     mean_interval: Interval
     regions: tuple[RegionMean, ...]

@@ -1,11 +1,10 @@
 from types import ModuleType
 
 import numpy as np
-import pytest
 
-from verifier.fidelity.judging.regions import coverage_of, holm, region_means, worst_of
+from verifier.fidelity.judging.regions import coverage_of
 from verifier.fidelity.verify import verify
-from verifier.report.report import CellAxis, Standing, Verdict
+from verifier.report.report import CellAxis, Verdict
 
 
 def axis(scenes: ModuleType, name: str, low: float, high: float, count: int) -> CellAxis:
@@ -29,48 +28,6 @@ def test_cells_of_two_axes_stand_in_their_order(scenes: ModuleType) -> None:
     found = coverage_of(axes, np.array([[0.9, -0.9]] * 4), 0.5)
 
     assert found.samples.tolist() == [[0, 0, 0], [4, 0, 0]]
-
-
-def test_a_departure_in_one_part_is_found_there_with_its_sign(scenes: ModuleType) -> None:
-    rng = np.random.default_rng(3)
-    x = rng.uniform(0.0, 4.0, 400)
-    errors = 0.01 * rng.standard_normal(400) - np.where(x > 3.0, 0.2, 0.0)
-    blocks = np.arange(400) // 5
-
-    found = region_means((axis(scenes, "x", 0.0, 4.0, 20),), x[:, None], errors, blocks, 0.1)
-
-    standings = [region.standing for region in found]
-    assert standings == [Standing.WITHIN] * 3 + [Standing.EXCEEDED]
-    worst = worst_of(found)
-    assert worst is not None
-    assert worst.mean == pytest.approx(-0.2, abs=0.01)
-    assert worst.bounds["x"] == pytest.approx((3.0, 4.0), abs=0.05)
-
-
-def test_parts_of_pure_noise_exceed_nothing(scenes: ModuleType) -> None:
-    rng = np.random.default_rng(4)
-    axes = (axis(scenes, "x", 0.0, 1.0, 10), axis(scenes, "y", 0.0, 1.0, 10))
-    wrong = 0
-    for _ in range(200):
-        places, errors = rng.uniform(0.0, 1.0, (120, 2)), rng.standard_normal(120)
-        # The tolerance is what the mean truly is: 16 parts, each tempted to exceed it.
-        found = region_means(axes, places, errors + 0.5, np.arange(120) // 4, 0.5)
-        wrong += any(region.standing is Standing.EXCEEDED for region in found)
-
-    # Family-wise 2.5 %; 200 runs have a standard error of 1.1 %.
-    assert wrong / 200 < 0.06
-
-
-def test_holm_agrees_with_its_definition() -> None:
-    rng = np.random.default_rng(5)
-    for _ in range(50):
-        chances = rng.uniform(0.0, 0.1, 6)
-        adjusted = np.empty(6)
-        running = 0.0
-        for rank, place in enumerate(np.argsort(chances)):
-            running = max(running, (6 - rank) * chances[place])
-            adjusted[place] = running
-        assert holm(chances, 0.1) == [bool(p <= 0.1) for p in adjusted]
 
 
 def test_a_robot_that_is_weak_on_one_side_fails_there(scenes: ModuleType) -> None:

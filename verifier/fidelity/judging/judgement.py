@@ -1,30 +1,25 @@
 """Each judged variable against its tolerance."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from runtime.arrays import Array, Booleans, Integers
-from runtime.program import Fidelity, Program
-from verifier.fidelity.judging.departure import (
-    Departure,
-    blocks_of,
-    departure_of,
-    mean_of,
-    standing_of,
-)
-from verifier.fidelity.judging.regions import region_means, worst_of
+from runtime.arrays import Array, Booleans
+from runtime.program import Fidelity, Kind, Program
+from verifier.fidelity.judging.departure import Departure, departure_of, standing_of
+from verifier.fidelity.judging.part_means import PartMean
+from verifier.fidelity.judging.parts import Condition
+from verifier.fidelity.judging.standing import judge_errors
 from verifier.fidelity.shooting.prediction import predict
 from verifier.fidelity.shooting.samples import turned
 from verifier.fidelity.shooting.shooting import Errors
 from verifier.fidelity.shooting.study import Study
-from verifier.fidelity.stretches.needs import parts_of
+from verifier.fidelity.stretches.needs import names_read, parts_of
 from verifier.fidelity.stretches.segments import on_circle
 from verifier.report.report import (
-    CellAxis,
     HorizonFigure,
-    Interval,
     Noise,
     RegionMean,
-    Standing,
     VariableResult,
     WindowView,
 )
@@ -35,23 +30,23 @@ QUANTISED_DOUBT = 0.3
 """Relative doubt in the variance of a sensor whose rounding is its noise: it is not white."""
 
 
-def results_of(
-    program: Program, fidelity: Fidelity, study: Study, axes: tuple[CellAxis, ...]
-) -> tuple[VariableResult, ...]:
+def results_of(program: Program, fidelity: Fidelity, study: Study) -> tuple[VariableResult, ...]:
     """The judgement of every driven state that has a tolerance."""
-    places = places_of(program, study)
-    where = np.stack([places[axis.name] for axis in axes], axis=-1)
+    conditions = _conditions(program, study, places_of(program, study))
     judged = {each.state.name for each in study.plan.samples}
     assert judged >= fidelity.tolerance.keys(), "only driven states have a tolerance"
     return tuple(
-        _result(study, j, fidelity.tolerance[each.state.name], axes, where)
+        _result(study, j, fidelity, conditions)
         for j, each in enumerate(study.plan.samples)
         if each.state.name in fidelity.tolerance
     )
 
 
 def places_of(program: Program, study: Study) -> dict[str, Array]:
-    """Where each window ran (W,): the measured start of a state, the mean of an input."""
+    """Where each window ran (W,): the measured start of a state, the mean of an input.
+
+    Of a discrete input, its value at the start.
+    """
     places = {}
     for name in parts_of(program):
         assumed = study.plan.model.flow.defaults[program.register.index(name)]
@@ -59,9 +54,18 @@ def places_of(program: Program, study: Study) -> dict[str, Array]:
     for each in study.plan.samples:
         start = np.interp(study.plan.windows.times, each.times, each.values)
         places[each.state.name] = on_circle(each.state, start)
+    discrete = {state.name for state in program.states if state.kind is Kind.DISCRETE}
     for column, given in enumerate(study.plan.needs.inputs):
-        places[given.name] = _means(study, study.plan.model.grid.inputs[:, column])
+        values = study.plan.model.grid.inputs[:, column]
+        is_discrete = given.name in discrete
+        places[given.name] = _at_starts(study, values) if is_discrete else _means(study, values)
     return places
+
+
+def _at_starts(study: Study, values: Array) -> Array:
+    """What holds (W,) at each window's start: a mean of modes is none."""
+    starts = np.searchsorted(study.plan.model.grid.times, study.plan.windows.times, side="right")
+    return np.asarray(values[starts - 1])
 
 
 def _means(study: Study, values: Array) -> Array:
@@ -72,32 +76,63 @@ def _means(study: Study, values: Array) -> Array:
     return np.asarray((area[windows.last] - area[windows.first]) / np.maximum(span, 1e-300))
 
 
+def _conditions(program: Program, study: Study, places: dict[str, Array]) -> tuple[Condition, ...]:
+    """What the field reads, and where each window had it: parts are told apart by these."""
+    read = names_read(program)
+    discrete = {state.name for state in program.states if state.kind is Kind.DISCRETE}
+    turns = {each.state.name: each.turn for each in study.plan.samples}
+    return tuple(
+        Condition(
+            name,
+            _settled(study, name) if name in discrete else values,
+            is_discrete=name in discrete,
+            turn=turns.get(name, 0.0),
+        )
+        for name, values in places.items()
+        if name in read
+    )
+
+
+def _settled(study: Study, name: str) -> Array:
+    """A discrete input at the start of each window (W,)."""
+    names = [given.name for given in study.plan.needs.inputs]
+    if name not in names:
+        return np.zeros(len(study.plan.windows.times))
+    inputs = study.plan.model.grid.inputs
+    return np.asarray(inputs[study.plan.windows.first, names.index(name)])
+
+
 def _result(
-    study: Study, j: int, tolerance: float, axes: tuple[CellAxis, ...], where: Array
+    study: Study, j: int, fidelity: Fidelity, conditions: tuple[Condition, ...]
 ) -> VariableResult:
     samples, noise = study.plan.samples[j], study.noise[j]
+    name = samples.state.name
+    tolerance, scatter = fidelity.tolerance[name], fidelity.scatter.get(name, 0.0)
+    every = [errors[j] for errors in study.shots.errors]
     figures = tuple(
-        _figure(horizon, _departure(study, study.shots.errors[h][j], noise), tolerance)
-        for h, horizon in enumerate(study.plan.horizons)
+        _figure(horizon, _departure(study, errors, noise), tolerance)
+        for horizon, errors in zip(study.plan.horizons, every, strict=True)
     )
-    errors = study.shots.errors[-1][j]
-    kept = _kept(study, errors)
-    blocks = blocks_of(errors.mean[kept] ** 2) if np.any(kept) else np.zeros(0, np.int64)
-    mean, interval = _mean(errors.mean[kept], blocks)
-    regions = region_means(axes, where[kept], errors.mean[kept], blocks, tolerance)
+    kept = _kept(study, every[-1])
+    own = tuple(replace(each, values=each.values[kept]) for each in conditions)
+    judged = judge_errors(every[-1].part(kept), own, figures[-1].interval, (tolerance, scatter))
+    regions = tuple(_region(mean) for mean in judged.parts.means)
     return VariableResult(
-        name=samples.state.name,
+        name=name,
         unit=samples.state.unit,
         period=samples.turn,
         tolerance=tolerance,
-        standing=_standing(figures[-1], regions),
+        standing=judged.standing,
         noise=noise,
         horizons=figures,
-        mean=mean,
-        mean_interval=interval,
+        systematic=judged.systematic,
+        scatter=judged.parts.scatter,
+        allowed_scatter=scatter,
+        mean=judged.mean,
+        mean_interval=judged.mean_interval,
         regions=regions,
-        worst=worst_of(regions),
-        errors=errors.plain,
+        worst=_worst(regions),
+        errors=every[-1].plain,
         views=_views(study, j, kept),
         origin=samples.state.origin,
     )
@@ -128,17 +163,28 @@ def _figure(horizon: float, found: Departure, tolerance: float) -> HorizonFigure
     )
 
 
-def _mean(errors: Array, blocks: Integers) -> tuple[float, Interval]:
-    if len(errors) == 0:
-        return 0.0, Interval(-np.inf, np.inf)
-    return mean_of(errors, blocks)
+def _region(found: PartMean) -> RegionMean:
+    return RegionMean(
+        bounds=found.part.bounds,
+        moved=found.moved,
+        hurried=found.hurried,
+        windows=int(np.sum(found.part.members)),
+        mean=found.mean,
+        interval=found.interval,
+        standing=found.standing,
+    )
 
 
-def _standing(declared: HorizonFigure, regions: tuple[RegionMean, ...]) -> Standing:
-    """A part of the region that exceeds the tolerance on its own exceeds it for the whole."""
-    if any(region.standing is Standing.EXCEEDED for region in regions):
-        return Standing.EXCEEDED
-    return declared.standing
+def _worst(regions: tuple[RegionMean, ...]) -> RegionMean | None:
+    """The part that departs most surely: the one whose interval stays furthest from zero.
+
+    Where every interval holds zero, the one with the largest mean.
+    """
+    return max(
+        regions,
+        key=lambda r: (max(r.interval.low, -r.interval.high, 0.0), abs(r.mean)),
+        default=None,
+    )
 
 
 def _views(study: Study, j: int, kept: Booleans) -> tuple[WindowView, ...]:

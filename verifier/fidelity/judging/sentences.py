@@ -17,31 +17,28 @@ HOPELESS = 100.0
 def exceeded(result: VariableResult) -> str:
     """The variable, by how much, against what."""
     figure, unit = result.declared, result.unit
-    if figure.standing is Standing.EXCEEDED:
-        return (
-            f"{result.name} departs by {quantity(figure.departure, unit)} after"
-            f" {number(figure.horizon)} s (95 % interval {_interval(figure.interval, unit)});"
-            f" {quantity(result.tolerance, unit)} is allowed"
-        )
     return (
         f"{result.name} departs by {quantity(figure.departure, unit)} after"
-        f" {number(figure.horizon)} s over all, but in a part of the region by more than the"
-        f" {quantity(result.tolerance, unit)} that is allowed"
+        f" {number(figure.horizon)} s (95 % interval {_interval(figure.interval, unit)});"
+        f" {quantity(result.tolerance, unit)} is allowed, and at least"
+        f" {quantity(result.systematic, unit)} of it is no chance: it comes back wherever the robot"
+        " is in the same situation"
     )
 
 
 def worst(result: VariableResult, units: dict[str, Unit]) -> list[str]:
-    """Where it is worst and in which direction; nothing where no part stands out."""
+    """In which direction it is worst; nothing where no part stands out."""
     region = result.worst
     if region is None or region.interval.low <= 0.0 <= region.interval.high:
         return []
     side = "above" if region.mean > 0.0 else "below"
     ends = sorted([abs(region.interval.low), abs(region.interval.high)])
+    place = where(region, result, units)
     return [
         (
-            f"{result.name} is worst for {where(region, units)}: there the robot ends"
-            f" {quantity(abs(region.mean), result.unit)} {side} the prediction on average (95 %"
-            f" interval {span(ends[0], ends[1], result.unit)}, {region.windows} windows)"
+            f"{result.name} is worst {f'for {place}' if place else 'everywhere'}: there the robot"
+            f" ends {quantity(abs(region.mean), result.unit)} {side} the prediction on average"
+            f" (95 % interval {span(ends[0], ends[1], result.unit)}, {region.windows} windows)"
         )
     ]
 
@@ -66,10 +63,15 @@ def proportion(study: Study, result: VariableResult) -> list[str]:
 def within(result: VariableResult) -> str:
     """What a PASS claims."""
     figure, unit = result.declared, result.unit
+    beside = (
+        f", beside the scatter of {quantity(result.allowed_scatter, unit)} that the spec allows"
+        if result.allowed_scatter > 0.0
+        else ""
+    )
     return (
         f"{result.name} stays within {quantity(result.tolerance, unit)} over"
         f" {number(figure.horizon)} s: it departs by {quantity(figure.departure, unit)}, at most"
-        f" {quantity(figure.interval.high, unit)} (95 %)"
+        f" {quantity(figure.interval.high, unit)} (95 %){beside}"
     )
 
 
@@ -88,17 +90,49 @@ def unmoved(study: Study, result: VariableResult) -> list[str]:
     ]
 
 
-def undecided(result: VariableResult) -> str:
+def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
     """Why a variable cannot be judged from this trace."""
     figure, unit = result.declared, result.unit
     if figure.windows == 0:
         return f"{result.name} has no sample at the end of any window"
-    return (
+    limit = float(np.hypot(result.tolerance, result.allowed_scatter))
+    departs = (
         f"{result.name} may or may not stay within {quantity(result.tolerance, unit)} over"
-        f" {number(figure.horizon)} s: it departs by {quantity(figure.departure, unit)}, and the"
-        f" 95 % interval is {_interval(figure.interval, unit)} ({figure.windows} overlapping"
-        " windows)"
+        f" {number(figure.horizon)} s: it departs by {quantity(figure.departure, unit)}"
     )
+    if figure.interval.low > limit:
+        return (
+            f"{departs}, but nothing foretells by how much: single runs scatter by"
+            f" {quantity(result.scatter, unit)}, and only {quantity(result.systematic, unit)} is"
+            " shown to come back; the robot is restless, or something moves it that the spec does"
+            " not know"
+        )
+    if figure.interval.high > limit:
+        return (
+            f"{departs}, and the 95 % interval is {_interval(figure.interval, unit)}"
+            f" ({figure.windows} overlapping windows)"
+        )
+    open_ones = [r for r in result.regions if r.standing is not Standing.WITHIN]
+    region = max(open_ones, key=lambda r: max(abs(r.interval.low), abs(r.interval.high)))
+    return (
+        f"{departs} over all, but for {where(region, result, units)} on average by"
+        f" {quantity(region.mean, unit)} (95 % interval {_interval(region.interval, unit)},"
+        f" {region.windows} windows)"
+    )
+
+
+def allow_scatter(result: VariableResult) -> list[str]:
+    """What to write where single runs scatter, and that is as it should be."""
+    figure, unit = result.declared, result.unit
+    if figure.interval.low <= float(np.hypot(result.tolerance, result.allowed_scatter)):
+        return []
+    return [
+        (
+            f"if {result.name} may scatter like that, write `fidelity: {{scatter: {{{result.name}:"
+            f" {quantity(result.scatter, unit)}}}}}`; else log what moves the robot, and let the"
+            " field read it"
+        )
+    ]
 
 
 def more_data(result: VariableResult, judged: float) -> str:
@@ -157,11 +191,17 @@ def unseen(coverage: Coverage) -> list[str]:
     return ["drive through more combinations: every axis was covered, but not jointly"]
 
 
-def where(region: RegionMean, units: dict[str, Unit]) -> str:
-    """A region in words: `x from 0 to 1 m, v from -1 to 0 m/s`."""
-    return ", ".join(
-        f"{name} from {span(low, high, units[name])}" for name, (low, high) in region.bounds.items()
-    )
+def where(region: RegionMean, result: VariableResult, units: dict[str, Unit]) -> str:
+    """A part in words: `x from 0 to 1 m, moves of 0.3 m`; empty where it is everything."""
+    told = [
+        f"{name} from {span(low, high, units[name])}" if high > low else f"{name} {number(low)}"
+        for name, (low, high) in region.bounds.items()
+    ]
+    if region.moved is not None:
+        told.append(f"moves of {quantity(region.moved, result.unit)}")
+    if region.hurried is not None:
+        told.append(f"its rate {'rising' if region.hurried > 0.0 else 'falling'}")
+    return ", ".join(told)
 
 
 def _declared(study: Study, result: VariableResult) -> tuple[Array, Array]:

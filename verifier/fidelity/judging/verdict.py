@@ -45,8 +45,11 @@ def decide(
     failed = [r for r in results if r.standing is Standing.EXCEEDED]
     if failed:
         return _failed(study, failed, units)
-    doubts = [sentences.undecided(r) for r in results if r.standing is Standing.UNDECIDED]
-    advice = [sentences.more_data(r, judged) for r in results if r.standing is Standing.UNDECIDED]
+    doubts = [sentences.undecided(r, units) for r in results if r.standing is Standing.UNDECIDED]
+    advice = []
+    for result in results:
+        if result.standing is Standing.UNDECIDED:
+            advice += sentences.allow_scatter(result) or [sentences.more_data(result, judged)]
     if not coverage.is_reached:
         doubts.append(sentences.uncovered(coverage))
         advice += sentences.unseen(coverage)
@@ -140,6 +143,6 @@ def notes_of(study: Study) -> list[str]:
         if noise.correlation > WHITE:
             notes.append(
                 f"the noise of {each.state.name} is not white (correlation of successive samples"
-                f" {noise.correlation:.2f}): only its white part is removed from the departure"
+                f" {noise.correlation:.2f}): its slow part counts as scatter of the windows"
             )
     return notes

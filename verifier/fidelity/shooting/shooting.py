@@ -38,13 +38,20 @@ class Errors:
 
     plain: measured minus predicted of the one sample nearest to the horizon. mean: averaged over
     the span around it. variance: of `mean`, from measurement noise. moved: how far the variable
-    was predicted to move.
+    was predicted to move. hurried: by how much it was predicted to move farther in the last tenth
+    of the horizon than in the first.
     """
 
     plain: Array
     mean: Array
     variance: Array
     moved: Array
+    hurried: Array
+
+    def part(self, part: Booleans) -> "Errors":
+        """Of some of the windows (W,)."""
+        own = self.plain, self.mean, self.variance, self.moved, self.hurried
+        return Errors(*(values[part] for values in own))
 
 
 @final
@@ -90,6 +97,7 @@ def _joined(parts: list[Errors]) -> Errors:
         np.concatenate([p.mean for p in parts]),
         np.concatenate([p.variance for p in parts]),
         np.concatenate([p.moved for p in parts]),
+        np.concatenate([p.hurried for p in parts]),
     )
 
 
@@ -210,4 +218,19 @@ def _errors(
         mean=np.sum(residual * share, axis=1) + absent,
         variance=averaged(noise[j], count) + of_start + absent,
         moved=at[0][rows, one] - _at_start(plan, paths, j) + absent,
+        hurried=_hurried(plan, paths[0, ..., j], horizon) + absent,
     )
+
+
+def _hurried(plan: Plan, path: Array, horizon: float) -> Array:
+    """What a variable moves in the last tenth of the horizon beyond what it does in the first.
+
+    path: (W, S + 1) as predicted from each window's first knot.
+    """
+    knots, first, length = plan.model.grid.times, plan.windows.first, path.shape[1]
+    tenths = []
+    for share in (0.0, 0.1, 0.9, 1.0):
+        there = np.searchsorted(knots, plan.windows.times + share * horizon * (1.0 - 1e-9))
+        tenths.append(np.clip(there - first, 0, length - 1))
+    start, early, late, end = (path[np.arange(len(path)), step] for step in tenths)
+    return np.asarray((end - late) - (early - start))

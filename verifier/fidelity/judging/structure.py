@@ -1,0 +1,94 @@
+"""How much of the errors is no chance: what other windows foretell of them.
+
+An error that comes back wherever the robot is in the same situation belongs to the spec or to the
+robot; unrest does not come back. So the error of each cluster of windows is foretold from all
+*other* clusters (but not from the two beside it, whose windows overlap its own) by a smooth
+function of the situation (kernel ridge regression, cross-fitted), and compared with what it was.
+For a forecast f of errors e with mean m(situation):
+
+    E[e f] / rms(f) = E[m f] / rms(f) <= rms(m)          (Cauchy and Schwarz)
+
+whatever f is: a poor forecast shows too little, never too much. The left side is a mean, and gets
+Student's t over clusters. Letters: W windows, d quantities that make up the situation.
+"""
+
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from runtime.arrays import Array, Integers
+
+MOST: Final = 600
+"""So many windows are enough; of more, every second, third ... one is taken."""
+REACHES: Final = (1.0, 3.0)
+"""How far neighbours reach, in standard deviations of the situation times its dimension's root."""
+RIDGES: Final = (0.1, 1.0, 10.0)
+"""The variance of the noise as a share of that of the errors."""
+FEWEST: Final = 4
+"""With fewer clusters nothing is foretold."""
+
+
+def shown_structure(errors: Array, situation: Array, clusters: Integers, chance: float) -> float:
+    """The root mean square of the errors (W,) that is shown to be no chance, 0 if none.
+
+    situation: (W, d). clusters: (W,) which windows depend on one another. `chance`: of the figure
+    being above the truth.
+    """
+    stride = -(-len(errors) // MOST)
+    errors, situation, clusters = errors[::stride], situation[::stride], clusters[::stride]
+    _, place = np.unique(clusters, return_inverse=True)
+    count = int(place.max(initial=-1)) + 1
+    if count < FEWEST or not np.any(errors):
+        return 0.0
+    forecast = _foretold(errors, _scaled(situation), place)
+    size = float(np.sqrt(np.mean(forecast**2)))
+    if size == 0.0:
+        return 0.0
+    products = errors * forecast / size
+    mean = float(np.mean(products))
+    sums = np.bincount(place, weights=products - mean)
+    error = float(np.sqrt(np.sum(sums**2) * count / (count - 1.0)) / len(products))
+    return max(0.0, mean - float(special.stdtrit(count - 1, 1.0 - chance)) * error)
+
+
+def _scaled(situation: Array) -> Array:
+    """Quantities (W, d) of variance 1; those that never change are left out."""
+    spread = np.std(situation, axis=0)
+    moving = spread > 1e-9 * np.max(np.abs(situation), axis=0, initial=1e-300)
+    return np.asarray((situation - np.mean(situation, axis=0))[:, moving] / spread[moving])
+
+
+def _foretold(errors: Array, situation: Array, place: Integers) -> Array:
+    """The forecast (W,) of each cluster from the others, by the kernel that foretells best."""
+    power = float(np.mean(errors**2))
+    best, least = np.zeros(len(errors)), power
+    distance = np.sum((situation[:, None, :] - situation[None, :, :]) ** 2, axis=-1)
+    for reach in REACHES:
+        width = reach**2 * max(situation.shape[1], 1)
+        # A constant, a slope and a bump: constants and gains are foretold from anywhere.
+        kernel = 1.0 + situation @ situation.T + np.exp(-0.5 * distance / width)
+        values, vectors = np.linalg.eigh(kernel)
+        values = np.maximum(values, 0.0)
+        for ridge in RIDGES:
+            hat = (vectors * (values / (values + ridge))) @ vectors.T
+            forecast = _without_own(errors, hat, place)
+            missed = float(np.mean((errors - forecast) ** 2))
+            if missed < least:
+                best, least = forecast, missed
+    return best
+
+
+def _without_own(errors: Array, hat: Array, place: Integers) -> Array:
+    """What a linear smoother with this hat matrix (W, W) foretells of each cluster.
+
+    The cluster and its neighbours in time are left out, in closed form.
+    """
+    residual = errors - hat @ errors
+    forecast = np.empty(len(errors))
+    for cluster in range(int(place.max()) + 1):
+        near = np.flatnonzero(np.abs(place - cluster) <= 1)
+        left = np.eye(len(near)) - hat[np.ix_(near, near)]
+        own = place[near] == cluster
+        forecast[near[own]] = (errors[near] - np.linalg.solve(left, residual[near]))[own]
+    return forecast
