@@ -76,15 +76,15 @@ def functions(basis: Basis, points: Array) -> Array:
     return np.asarray(kernel @ basis.root)
 
 
-def slopes(basis: Basis, points: Array) -> Array:
-    """Derivatives (..., K, m) of phi."""
+def slopes(basis: Basis, points: Array, weights: Array) -> Array:
+    """Derivatives (..., D, m) of the sums weights (..., D, K) . phi at points (..., m)."""
     kernel = np.exp(-0.5 * _distance(points, basis.places, basis.lengths, basis.turns))
     off = points[..., None, :] - basis.places
     turned = basis.turns > 0.0
     safe = np.where(turned, basis.turns, 1.0)
     along = np.where(turned, safe / (2.0 * np.pi) * np.sin(2.0 * np.pi * off / safe), off)
     by_place = -kernel[..., None] * along / basis.lengths**2
-    return np.einsum("...kj,kl->...lj", by_place, basis.root)
+    return np.asarray((weights @ basis.root.T) @ by_place)
 
 
 def _distance(points: Array, places: Array, lengths: Array, turns: Array) -> Array:

@@ -1,0 +1,74 @@
+"""How large the corrections are, and how sure: what prior and data say together.
+
+The size s of the corrections is the one with the largest marginal likelihood (MacKay 1992), but
+never less than what the tolerance would let pass over one horizon: a field is not called known
+because it is called close.
+
+Errors of neighbouring samples and windows are related (process noise, coloured noise). So the
+information is divided by the factor by which the scores of blocks of windows spread more than
+independent ones would (a design effect: Kish 1965). Resampling the blocks themselves would have no
+rank here: there are fewer blocks than coefficients.
+"""
+
+from typing import Final
+
+import numpy as np
+
+from runtime.arrays import Array
+from verifier.robot_topology.equations import Equations
+
+GAIN: Final = 0.2
+"""The prior deviation of a rate's gain."""
+SIZES: Final = 2.0 ** np.arange(0, 9)
+"""Of the corrections, in tolerances per horizon."""
+BLOCK: Final = 2
+"""Windows in a block: two horizons."""
+
+
+def solved(rows: Equations, found: Array, least: Array) -> tuple[Array, Array]:
+    """The best coefficients (P,) around `found`, and a root (P, P) of their covariance.
+
+    least (D,): of the sizes of the corrections, a rate per axis.
+    """
+    information = np.sum(rows.information, axis=0)
+    right = np.sum(rows.score, axis=0) + information @ found
+    count = len(found) // len(least)
+    effect = 1.0
+    for _ in range(2):
+        data, side = information / effect, right / effect
+        prior = max(
+            (_prior(least * size, count) for size in SIZES),
+            key=lambda each: _evidence(data, side, each),
+        )
+        value = np.linalg.solve(data + np.diag(1.0 / prior), side)
+        precision = information + effect * np.diag(1.0 / prior)
+        effect = max(1.0, _design_effect(rows, value - found, precision))
+    precision = information / effect + np.diag(1.0 / prior)
+    value = np.linalg.solve(precision, right / effect)
+    return value, np.linalg.cholesky(np.linalg.inv(precision))
+
+
+def _prior(sizes: Array, count: int) -> Array:
+    """Prior variances (P,): `count` coefficients an axis, the last one its gain."""
+    variances = np.repeat(sizes**2, count)
+    variances[count - 1 :: count] = GAIN**2
+    return variances
+
+
+def _evidence(information: Array, right: Array, prior: Array) -> float:
+    """The logarithm of the marginal likelihood, but for a constant."""
+    root = np.sqrt(prior)
+    lower = np.linalg.cholesky(np.eye(len(root)) + root[:, None] * information * root)
+    projected = np.linalg.solve(lower, root * right)
+    return float(0.5 * projected @ projected - np.sum(np.log(np.diag(lower))))
+
+
+def _design_effect(rows: Equations, step: Array, precision: Array) -> float:
+    """By how much more the scores of blocks spread than information says, on the average."""
+    scores = rows.score - rows.information @ step
+    count = max(1, len(scores) // BLOCK)
+    summed = np.zeros((count, scores.shape[1]))
+    np.add.at(summed, np.arange(len(scores)) * count // len(scores), scores)
+    spread = np.sum(summed * np.linalg.solve(precision, summed.T).T)
+    expected = np.trace(np.linalg.solve(precision, np.sum(rows.information, axis=0)))
+    return float(spread / max(expected, 1e-300))
