@@ -1,44 +1,50 @@
 """`specc compare`: hold one behavior against another, such as code against a sketch."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import typer
 
 from specc.cli.console import print_json, print_styled, say
-from specc.cli.options import Format, FormatOption, Settings, assignments
+from specc.cli.options import Format, FormatOption, Settings, assignments, names_of
 from specc.cli.status import Status
 from specc.cli.warming import warmed
 
+Found: TypeAlias = Annotated[
+    Path, typer.Argument(help="The behavior that there is (.yaml, .specc).", metavar="SPEC")
+]
+Wanted: TypeAlias = Annotated[
+    Path, typer.Argument(help="The one that is wanted, such as a sketch.", metavar="WANTED")
+]
+Output: TypeAlias = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help="Draw where they differ: .svg, .png or .pdf."),
+]
+Axes: TypeAlias = Annotated[
+    str | None, typer.Option("--axes", "-a", metavar="X,Y", help="The states to compare over.")
+]
+Tolerance: TypeAlias = Annotated[
+    float,
+    typer.Option(
+        "--tolerance", "-t", min=0.0, help="Of each rate, as a share of its largest size."
+    ),
+]
+Moved: TypeAlias = Annotated[
+    float,
+    typer.Option(
+        "--moved", min=0.0, help="Of features' places, as a share of the domain; of periods."
+    ),
+]
+
 
 def compare(
-    found: Annotated[
-        Path, typer.Argument(help="The behavior that there is (.yaml, .specc).", metavar="SPEC")
-    ],
-    wanted: Annotated[
-        Path, typer.Argument(help="The one that is wanted, such as a sketch.", metavar="WANTED")
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Draw where they differ: .svg, .png or .pdf."),
-    ] = None,
-    axes: Annotated[
-        str | None,
-        typer.Option("--axes", "-a", metavar="X,Y", help="The states to compare over."),
-    ] = None,
+    found: Found,
+    wanted: Wanted,
+    output: Output = None,
+    axes: Axes = None,
     settings: Settings = [],  # noqa: B006  typer copies it
-    tolerance: Annotated[
-        float,
-        typer.Option(
-            "--tolerance", "-t", min=0.0, help="Of each rate, as a share of its largest size."
-        ),
-    ] = 0.05,
-    moved: Annotated[
-        float,
-        typer.Option(
-            "--moved", min=0.0, help="Of features' places, as a share of the domain; of periods."
-        ),
-    ] = 0.05,
+    tolerance: Tolerance = 0.05,
+    moved: Moved = 0.05,
     form: FormatOption = Format.TEXT,
 ) -> int:
     """Say where a behavior departs from another: place by place, and feature by feature.
@@ -60,11 +66,10 @@ def compare(
 
     require_suffix(output, ".svg", ".png", ".pdf")
     warmed(found)
-    names = tuple(name.strip() for name in axes.split(",")) if axes else None
     comparison = compare_behaviors(
         load_program(found),
         load_program(wanted),
-        names,
+        names_of(axes),
         assignments(settings),
         Tolerances(tolerance, moved),
     )

@@ -59,3 +59,8 @@ def one_assignment(setting: str) -> tuple[str, str]:
     """
     ((name, value),) = assignments([setting]).items()
     return name, value
+
+
+def names_of(listed: str | None) -> tuple[str, ...] | None:
+    """`"x, v"` as two names; None where nothing was given."""
+    return tuple(name.strip() for name in listed.split(",")) if listed else None

@@ -1,62 +1,68 @@
 """`specc portrait`: a phase portrait, as a picture and as numbers."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import typer
 
 from specc.cli.console import print_json, print_text, progress_bar, say
-from specc.cli.options import Format, FormatOption, SpecPath, assignments, one_assignment
+from specc.cli.options import Format, FormatOption, SpecPath, assignments, names_of, one_assignment
 from specc.cli.warming import warmed
 from specc.figures.style_names import Style
+
+Output: TypeAlias = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help=".svg, .png, .pdf or .json; default NAME.svg here."),
+]
+Axes: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--axes", "-a", metavar="X,Y", help="One to three states; default the first two."),
+]
+Held: TypeAlias = Annotated[
+    list[str],
+    typer.Option(
+        "--set",
+        "--at",
+        "-s",
+        metavar="NAME=VALUE",
+        help="Set a control or hold a state, in its own unit or with one. Repeatable.",
+    ),
+]
+Values: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--sweep",
+        metavar="NAME=LOW:HIGH:COUNT",
+        help="A panel for each value of a control or a mode: `mu=0.1:3:6`, "
+        "`speed=0.1,0.5`, `going=forward,back`.",
+    ),
+]
+Slices: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--slices", metavar="NAME=COUNT", help="A panel for each slice of a state."),
+]
+Against: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--against",
+        metavar="NAME[=LOW:HIGH]",
+        help="Bifurcation diagram: fixed points and cycles against a control.",
+    ),
+]
+StyleOption: TypeAlias = Annotated[
+    Style, typer.Option("--style", help="For screens, for journals in grey, for dark pages.")
+]
 
 
 def portrait(
     spec: SpecPath,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help=".svg, .png, .pdf or .json; default NAME.svg here."),
-    ] = None,
-    axes: Annotated[
-        str | None,
-        typer.Option(
-            "--axes", "-a", metavar="X,Y", help="One to three states; default the first two."
-        ),
-    ] = None,
-    settings: Annotated[
-        list[str],
-        typer.Option(
-            "--set",
-            "--at",
-            "-s",
-            metavar="NAME=VALUE",
-            help="Set a control or hold a state, in its own unit or with one. Repeatable.",
-        ),
-    ] = [],  # noqa: B006  typer copies it
-    sweep: Annotated[
-        str | None,
-        typer.Option(
-            "--sweep",
-            metavar="NAME=LOW:HIGH:COUNT",
-            help="A panel for each value of a control or a mode: `mu=0.1:3:6`, "
-            "`speed=0.1,0.5`, `going=forward,back`.",
-        ),
-    ] = None,
-    slices: Annotated[
-        str | None,
-        typer.Option("--slices", metavar="NAME=COUNT", help="A panel for each slice of a state."),
-    ] = None,
-    against: Annotated[
-        str | None,
-        typer.Option(
-            "--against",
-            metavar="NAME[=LOW:HIGH]",
-            help="Bifurcation diagram: fixed points and cycles against a control.",
-        ),
-    ] = None,
-    style: Annotated[
-        Style, typer.Option("--style", help="For screens, for journals in grey, for dark pages.")
-    ] = Style.SCREEN,
+    output: Output = None,
+    axes: Axes = None,
+    settings: Held = [],  # noqa: B006  typer copies it
+    sweep: Values = None,
+    slices: Slices = None,
+    against: Against = None,
+    style: StyleOption = Style.SCREEN,
     form: FormatOption = Format.TEXT,
 ) -> None:
     """Draw the phase portrait of a behavior: field, fixed points, cycles, separatrices, basins.
@@ -81,7 +87,7 @@ def portrait(
     require_suffix(output, ".svg", ".png", ".pdf", ".json")
     warmed(spec)
     program = loading.load_program(spec)
-    names = tuple(name.strip() for name in axes.split(",")) if axes else None
+    names = names_of(axes)
     held = assignments(settings)
     found: portraying.Found
     match sweep or slices, against:
