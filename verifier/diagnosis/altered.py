@@ -63,7 +63,9 @@ class Effect:
     """Something that may be otherwise than the spec or the log says, with the numbers it takes.
 
     label: as in `dead time of turn`. starts: where a fit begins, the neutral values if empty.
-    parameter: set where it is one of the scalars that are refitted.
+    parameter: set where it is one of the scalars that are refitted. stands_in: it
+    puts measured states in place of predicted ones, so that it is compared with itself at its
+    neutral values.
     """
 
     kind: CandidateKind
@@ -74,6 +76,7 @@ class Effect:
     origin: str
     starts: tuple[Values, ...] = ()
     parameter: ParameterKind | None = None
+    stands_in: bool = False
 
     @property
     def neutral(self) -> Values:

@@ -5,9 +5,9 @@ The rate of each driven state becomes
     time_scale * (gain * (f * (1 - is_given) + given) + offset)
 
 with constants that leave it as it is: 1, 1, 0, 0, 0. `given` is a rate as a function of time, put
-in from outside. It works on the formula where there is one, since then every constant of the spec
-can be moved; else on the tables' coefficients. A step map's gain and offset act on how far it
-goes in a step.
+in from outside. Parts of a formula can saturate and have dead zones (`wraps`). It works on the
+formula where there is one, since then every constant of the spec can be moved; else on the tables'
+coefficients. A step map's gain and offset act on how far it goes in a step.
 """
 
 from dataclasses import replace
@@ -16,6 +16,7 @@ from typing import Final
 from runtime.code import Code
 from runtime.flow import Flow, Source, flow_of
 from runtime.program import Constant, Control, Field, Kind, Program, State, Term, Unit
+from verifier.diagnosis.wraps import ENDLESS, wrapped, wraps_of
 
 ONE: Final = Unit("1", 1.0)
 TIME_SCALE: Final = "time:scale"
@@ -57,11 +58,17 @@ def loosened(program: Program) -> Program:
         plain = {gain_of(name): 1.0, offset_of(name): 0.0}
         plain |= {given_of(name): 0.0, is_given_of(name): 0.0}
         extra += [Constant(key, ONE, value, "", "") for key, value in plain.items()]
+    wraps = wraps_of(program)
+    for wrap in wraps:
+        extra.append(Constant(wrap.limit, ONE, ENDLESS, "", ""))
+        extra.append(Constant(wrap.zone, ONE, 0.0, "", ""))
     constants = (*program.constants, *extra)
     if field.formula is None:
         return replace(program, constants=constants, field=_loosened_terms(field))
     formula = tuple(
-        _loosened_code(code, name, is_map=field.is_map)
+        _loosened_code(
+            wrapped(code, tuple(w for w in wraps if w.name == name)), name, is_map=field.is_map
+        )
         for code, name in zip(field.formula, field.driven, strict=True)
     )
     return replace(

@@ -67,6 +67,24 @@ def profiled(
     return _projected(scene, found[0], slopes, starts, sigma)
 
 
+def left_over(
+    scene: Scene, settings: list[Altered], starts: list[Array], sigmas: list[Array]
+) -> Array:
+    """What free starts leave of the residuals (L, W, R), a setting, starts and a noise per lane."""
+    count = 1 + len(scene.observed)
+    lanes = [lane for each in starts for lane in (each, *_nudged(scene, each))]
+    many = [setting for setting in settings for _ in range(count)]
+    found = residuals(scene, many, np.array(lanes))
+    found = found.reshape(len(settings), count, scene.windows, -1)
+    rows = zip(found, starts, sigmas, strict=True)
+    return np.array(
+        [
+            _projected(scene, f[0], _slopes(scene, f, s, []), s, sigma).residual
+            for f, s, sigma in rows
+        ]
+    )
+
+
 def _nudged(scene: Scene, starts: Array) -> list[Array]:
     lanes = []
     for each, nudge in zip(scene.observed, _nudges(scene, starts), strict=True):

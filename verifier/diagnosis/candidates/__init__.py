@@ -1,0 +1,1 @@
+"""What may be otherwise than the spec or the log says, beside its numbers."""

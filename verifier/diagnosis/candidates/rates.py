@@ -1,0 +1,135 @@
+"""Rates that saturate, have a dead zone, or come late.
+
+What lies in a formula is wrapped there. A rate that comes late cannot be told from the state at
+the same instant, so it is worked out along the smoothed trace and put in as a function of time.
+"""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from runtime.arrays import Array
+from runtime.program import Unit
+from verifier.diagnosis.altered import Altered, Effect, Number, Values
+from verifier.diagnosis.candidates.inputs import LAGS, LIMITS, SECOND, SHIFTS, ZONES
+from verifier.diagnosis.courses import Course
+from verifier.diagnosis.loosened import given_of, is_given_of
+from verifier.diagnosis.scene import Scene
+from verifier.diagnosis.smoothed import rates_of, smoothed, values_of
+from verifier.diagnosis.wraps import Wrap, wraps_of
+from verifier.report.diagnosis import CandidateKind
+
+
+def effects_on_rates(scene: Scene) -> tuple[Effect, ...]:
+    """Of every driven state's rate, and of the differences in its formula."""
+    along = smoothed(scene)
+    effects = []
+    units = {state.name: state.unit for state in scene.program.states}
+    for wrap in wraps_of(scene.program):
+        most = float(np.nanmax(np.abs(values_of(scene, along, wrap.code)), initial=0.0))
+        if most > 0.0:
+            effects += _sizes(wrap, most, _unit(wrap, units), scene.program.field.origin)
+    if scene.program.field.is_map:
+        return tuple(effects)
+    found = rates_of(scene, along)
+    for each in scene.observed:
+        rate = found[:, each.column]
+        is_driven = each.name in scene.program.field.driven
+        if is_driven and scene.flow.moves[each.column] and np.ptp(rate) > 0.0:
+            effects += _late(scene, each.name, along.times, rate)
+    return tuple(effects)
+
+
+def _unit(wrap: Wrap, units: dict[str, Unit]) -> Unit:
+    """Of a rate per second; of a difference, that of the first state in it."""
+    unit = units[wrap.name]
+    if wrap.is_whole:
+        return Unit(f"{unit.text}/s", unit.scale)
+    return next((units[token] for token in wrap.code.tokens if token in units), Unit("1", 1.0))
+
+
+def _sizes(wrap: Wrap, most: float, unit: Unit, origin: str) -> list[Effect]:
+    limit = Number("limit", unit, most, 1e-4 * most, 0.0, most)
+    zone = Number("half width", unit, 0.0, 1e-4 * most, 0.0, most)
+    name = (wrap.name,)
+    limits = tuple((share * most,) for share in LIMITS)
+    zones = tuple((share * most,) for share in ZONES)
+    return [
+        Effect(
+            CandidateKind.SATURATION,
+            name,
+            f"saturation of {wrap.words}",
+            (limit,),
+            _Entry(wrap.limit),
+            origin,
+            limits,
+        ),
+        Effect(
+            CandidateKind.DEAD_ZONE,
+            name,
+            f"dead zone of {wrap.words}",
+            (zone,),
+            _Entry(wrap.zone),
+            origin,
+            zones,
+        ),
+    ]
+
+
+def _late(scene: Scene, name: str, times: Array, rate: Array) -> list[Effect]:
+    """A dead time and a lag of one rate, from its values along the trace."""
+    horizon, origin = scene.horizon, scene.program.field.origin
+    step = float(times[1] - times[0])
+    course = Course(times - 0.5 * step, rate)
+    delay = Number("delay", SECOND, 0.0, 1e-3 * horizon, 0.0, horizon)
+    lag = Number("time constant", SECOND, 0.0, 1e-3 * horizon, 0.0, 2.0 * horizon)
+    return [
+        Effect(
+            CandidateKind.DEAD_TIME,
+            (name,),
+            f"dead time of the rate of {name}",
+            (delay,),
+            _Late(name, course, is_lag=False),
+            origin,
+            tuple((share * horizon,) for share in SHIFTS),
+            stands_in=True,
+        ),
+        Effect(
+            CandidateKind.LAG,
+            (name,),
+            f"lag of the rate of {name}",
+            (lag,),
+            _Late(name, course, is_lag=True),
+            origin,
+            tuple((share * horizon,) for share in LAGS),
+            stands_in=True,
+        ),
+    ]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """Moves one entry of the register."""
+
+    name: str
+
+    def __call__(self, setting: Altered, values: Values) -> Altered:
+        return setting.moved(self.name, values[0])
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Late:
+    """Puts a rate in from outside, late or through a lag."""
+
+    name: str
+    course: Course
+    is_lag: bool
+
+    def __call__(self, setting: Altered, values: Values) -> Altered:
+        shift, lag = (0.0, values[0]) if self.is_lag else (values[0], 0.0)
+        course = Course(self.course.times, self.course.values, shift, lag)
+        given = setting.moved(is_given_of(self.name), 1.0)
+        return given.with_course(given_of(self.name), course)

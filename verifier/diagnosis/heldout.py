@@ -1,0 +1,95 @@
+"""How well a fit predicts windows that it was not fitted to.
+
+Windows are dealt to two halves, neighbours in pairs. The numbers for one half are those that the
+other half alone would give (a Gauss-Newton step from the fit to all), and each window is scored
+by the logarithm of the likelihood under the noise of the other half. Successive residuals that
+depend on one another count as the fewer that they are.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from runtime.arrays import Array, Booleans
+from verifier.diagnosis.altered import Effect
+from verifier.diagnosis.fitting import (
+    Fit,
+    information,
+    solved,
+    steered,
+    white_slopes,
+    within,
+)
+from verifier.diagnosis.profiled import left_over, setting_of
+from verifier.diagnosis.residuals import owners
+from verifier.diagnosis.scene import Scene
+from verifier.diagnosis.sensitivities import remaining_noise
+
+HALVES: Final = 2
+PAIR: Final = 2
+"""Neighbours of so many are dealt together, where there are enough windows."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Scored:
+    """Per window and variable (W, D): held-out squares of the errors, and log-likelihood."""
+
+    squares: Array
+    likelihood: Array
+
+
+def scored(scene: Scene, fitted: Fit) -> Scored:
+    """Every window, predicted by the half that it is not in."""
+    halves = halves_of(scene)
+    residual, slopes = white_slopes(scene, fitted)
+    settings, starts, sigmas = [], [], []
+    for mine in halves:
+        train = ~mine
+        values = fitted.values
+        if values:
+            right = np.einsum("wri,wr->i", slopes[train], residual[train])
+            step = solved(information(slopes[train]), right, 0.0)
+            values = within(fitted.effects, np.array(values) + step)
+        settings.append(setting_of(scene, fitted.effects, values))
+        starts.append(steered(scene, fitted, values))
+        sigmas.append(_noise_of(scene, fitted, train))
+    found = left_over(scene, settings, starts, sigmas)
+    squares, likelihood = _empty(scene), _empty(scene)
+    for rest, sigma, mine in zip(found, sigmas, halves, strict=True):
+        per = _squares(scene, rest)
+        counts = np.stack([np.sum(each.used, axis=1) for each in scene.observed], axis=1)
+        squares[mine] = per[mine]
+        likelihood[mine] = -(per / (2.0 * sigma**2) + counts * np.log(sigma))[mine]
+    return Scored(squares, likelihood)
+
+
+def halves_of(scene: Scene) -> list[Booleans]:
+    """Which windows (W,) are in each half."""
+    pair = PAIR if scene.windows >= 4 * PAIR else 1
+    half = (np.arange(scene.windows) // pair) % HALVES
+    return [np.asarray(half == k) for k in range(HALVES)]
+
+
+def numbers_of(effects: tuple[Effect, ...]) -> int:
+    """How many numbers they take."""
+    return sum(len(effect.numbers) for effect in effects)
+
+
+def _empty(scene: Scene) -> Array:
+    return np.zeros((scene.windows, len(scene.observed)))
+
+
+def _noise_of(scene: Scene, fitted: Fit, train: Booleans) -> Array:
+    """The noise (D,) that the training windows show."""
+    share = np.sum(train) / len(train)
+    residual = np.where(train[:, None], fitted.left.residual, 0.0) / np.sqrt(share)
+    return remaining_noise(scene, residual)
+
+
+def _squares(scene: Scene, residual: Array) -> Array:
+    owner = owners(scene)
+    return np.stack(
+        [np.sum(residual[:, owner == j] ** 2, axis=1) for j in range(len(scene.observed))], axis=1
+    )
