@@ -18,10 +18,11 @@ class Plot:
 @final
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table whose first column names its rows."""
+    """A table whose first column names its rows; words: how many columns after it are words."""
 
     titles: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    words: int = 0
 
 
 @final
@@ -47,8 +48,33 @@ class VariablePart:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Block:
+    """A piece of a part: sentences, then a figure, then a table; `title` may be empty."""
+
+    title: str
+    sentences: tuple[str, ...] = ()
+    is_list: bool = False
+    figure: Plot | None = None
+    table: Table | None = None
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A section of the page that explains the verdict."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Page:
-    """The whole page, in the order in which it is read."""
+    """The report of one trace, in the order in which it is read.
+
+    explanations: why the robot departs, and what else speaks of the robot. limits: how far the
+    verdict reaches.
+    """
 
     title: str
     verdict: str
@@ -59,11 +85,42 @@ class Page:
     rows: tuple[Row, ...]
     how: str
     overview: Plot | None
+    explanations: tuple[Part, ...]
     variables: tuple[VariablePart, ...]
     coverage: tuple[str, ...]
     coverage_figure: Plot | None
+    limits: tuple[Part, ...]
     exclusions: Table | None
     losses: Table | None
     notes: tuple[str, ...]
     provenance: tuple[tuple[str, str], ...]
     advice: tuple[str, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class RunRow:
+    """One trace in the table of all: a link to its page, or why it can't be used."""
+
+    anchor: str
+    source: str
+    verdict: str
+    sign: str
+    cells: tuple[tuple[str, str], ...]
+    reason: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class RunsPage:
+    """Many traces on one page. columns: the titles of the rows' cells; a cell has a standing."""
+
+    title: str
+    verdict: str
+    sign: str
+    headline: str
+    reasons: tuple[str, ...]
+    columns: tuple[str, ...]
+    rows: tuple[RunRow, ...]
+    how: str
+    pages: tuple[tuple[str, Page], ...]

@@ -14,11 +14,10 @@ from specc import __version__
 from specc.figures.coverage import draw_coverage
 from specc.figures.errors import draw_error_map, draw_errors, places_shown
 from specc.figures.quantities import number, quantity, seconds
-from specc.figures.style import Picture
 from specc.figures.verdicts import draw_verdicts
 from specc.figures.windows import draw_windows
-from specc.pages.inline_svg import inline_svg
-from specc.pages.page import Page, Plot, Row, Table, VariablePart
+from specc.pages.page import Page, Plot, Row, RunsPage, Table, VariablePart
+from specc.pages.parts import explanations, limits_of_verdict, plotted
 from specc.pages.sentences import (
     about_coverage,
     about_variable,
@@ -30,14 +29,20 @@ from specc.pages.sentences import (
     how_to_read_windows,
     ranged,
 )
+from verifier.report.examination import Examination
 from verifier.report.report import Report, TraceIdentity, VariableResult, Verdict
 
 SIGNS: Final = {Verdict.PASS: "✓", Verdict.FAIL: "✗", Verdict.INCONCLUSIVE: "?"}
 COLUMNS: Final = ("tolerance", "departure", "its interval", "RMSE", "mean error", "windows")
 
 
-def report_page(report: Report) -> str:
-    """The report as self-contained HTML: the verdict first, its evidence after it."""
+def report_page(examination: Examination) -> str:
+    """One trace as self-contained HTML: the verdict first, its evidence after it."""
+    return rendered("report.html.j2", gathered(examination))
+
+
+def rendered(template: str, page: Page | RunsPage) -> str:
+    """A page laid out by one of the templates."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("specc.pages"),
         autoescape=True,
@@ -47,12 +52,17 @@ def report_page(report: Report) -> str:
     )
     # The style sheet is ours; within <style> it must not be escaped.
     sheet = environment.get_template("report.css").render()
-    template = environment.get_template("report.html.j2")
-    return template.render(page=gathered(report), style=Markup(sheet))  # noqa: S704
+    return environment.get_template(template).render(page=page, style=Markup(sheet))  # noqa: S704
 
 
-def gathered(report: Report) -> Page:
-    """What the page says, in the order in which it is read."""
+def gathered(examination: Examination, prefix: str = "", *, is_drawn: bool = True) -> Page:
+    """What the page says, in the order in which it is read.
+
+    Args:
+        prefix: keeps the ids of figures apart where a page holds several traces.
+        is_drawn: whether the variables get figures.
+    """
+    report = examination.report
     coverage = report.coverage
     return Page(
         title=f"{report.verdict.upper()}: {report.spec.name}",
@@ -63,11 +73,16 @@ def gathered(report: Report) -> Page:
         columns=COLUMNS,
         rows=tuple(map(_row, report.variables)),
         how=how_to_read_the_table(report),
-        overview=_overview(report),
-        variables=tuple(_part(report, i, v) for i, v in enumerate(report.variables)),
+        overview=_overview(report, prefix),
+        explanations=explanations(examination, prefix),
+        variables=tuple(
+            _part(report, f"{prefix}v{i}", variable, is_drawn=is_drawn)
+            for i, variable in enumerate(report.variables)
+        ),
         coverage=about_coverage(coverage),
         coverage_figure=coverage
-        and _plot(draw_coverage(coverage), "coverage", how_to_read_coverage(coverage)),
+        and plotted(draw_coverage(coverage), f"{prefix}coverage", how_to_read_coverage(coverage)),
+        limits=limits_of_verdict(examination, prefix),
         exclusions=_exclusions(report),
         losses=_losses(report),
         notes=report.notes,
@@ -76,10 +91,11 @@ def gathered(report: Report) -> Page:
     )
 
 
-def _overview(report: Report) -> Plot | None:
+def _overview(report: Report, prefix: str) -> Plot | None:
     if not report.variables:
         return None
-    return _plot(draw_verdicts(report), "overview", how_to_read_the_overview(report))
+    caption = how_to_read_the_overview(report)
+    return plotted(draw_verdicts(report), f"{prefix}overview", caption)
 
 
 def _row(variable: VariableResult) -> Row:
@@ -98,29 +114,24 @@ def _row(variable: VariableResult) -> Row:
     )
 
 
-def _part(report: Report, index: int, variable: VariableResult) -> VariablePart:
-    name = f"v{index}"
+def _part(report: Report, name: str, variable: VariableResult, *, is_drawn: bool) -> VariablePart:
     figures: list[Plot] = []
-    if variable.views:
+    if variable.views and is_drawn:
         windows = draw_windows(variable)
-        figures.append(_plot(windows, f"{name}-windows", how_to_read_windows(variable)))
-    if variable.errors.size:
+        figures.append(plotted(windows, f"{name}-windows", how_to_read_windows(variable)))
+    if variable.errors.size and is_drawn:
         errors = draw_errors(report, variable)
-        figures.append(_plot(errors, f"{name}-errors", how_to_read_errors(report, variable)))
+        figures.append(plotted(errors, f"{name}-errors", how_to_read_errors(report, variable)))
         places = places_shown(report)
         if places:
             caption = how_to_read_the_map(places)
-            figures.append(_plot(draw_error_map(report, variable), f"{name}-map", caption))
+            figures.append(plotted(draw_error_map(report, variable), f"{name}-map", caption))
     return VariablePart(
         name=variable.name,
         sentences=about_variable(report, variable),
         figures=tuple(figures),
         horizons=_horizons(variable),
     )
-
-
-def _plot(figure: Picture, name: str, caption: str) -> Plot:
-    return Plot(inline_svg(figure, name, caption), caption)
 
 
 def _horizons(variable: VariableResult) -> Table | None:

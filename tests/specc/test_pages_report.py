@@ -8,7 +8,9 @@ from html.parser import HTMLParser
 import pytest
 
 from specc.pages.report_page import report_page
+from tests.specc.examination_scenes import examination
 from tests.specc.report_scenes import coverage, report
+from verifier.report.examination import Examination
 from verifier.report.report import Verdict
 
 VOID = {"meta", "br", "img", "link", "input", "hr"}
@@ -57,7 +59,7 @@ def read(page: str) -> Reader:
 
 @pytest.fixture(scope="module")
 def page() -> str:
-    return report_page(report(cells=coverage(2)))
+    return report_page(examination())
 
 
 def test_the_page_is_well_formed_and_its_ids_are_unique(page: str) -> None:
@@ -109,7 +111,12 @@ def test_quantities_are_in_the_users_units(page: str) -> None:
 
 def test_hostile_texts_stay_texts(page: str) -> None:
     honest = read(page)
-    hostile_page = report_page(report(cells=coverage(2), word=HOSTILE, heading=f"h{HOSTILE}"))
+    hostile_page = report_page(
+        replace(
+            examination(word=HOSTILE),
+            report=report(cells=coverage(2), word=HOSTILE, heading=f"h{HOSTILE}"),
+        )
+    )
     hostile = read(hostile_page)
 
     assert "<script>" not in hostile_page
@@ -127,7 +134,7 @@ def test_hostile_texts_stay_texts(page: str) -> None:
 def test_every_verdict_has_its_page(verdict: Verdict) -> None:
     made = replace(report(verdict), variables=())
 
-    assert f'class="verdict {verdict}"' in report_page(made)
+    assert f'class="verdict {verdict}"' in report_page(Examination(made))
 
 
 def test_a_report_that_judged_nothing_still_has_a_page() -> None:
@@ -135,7 +142,7 @@ def test_a_report_that_judged_nothing_still_has_a_page() -> None:
         report(Verdict.INCONCLUSIVE, windows=0), variables=(), exclusions=(), losses=(), notes=()
     )
 
-    page = report_page(nothing)
+    page = report_page(Examination(nothing))
 
     assert "Nothing was excluded" in page
     assert "declares no region" in page
@@ -143,7 +150,7 @@ def test_a_report_that_judged_nothing_still_has_a_page() -> None:
 
 
 def test_a_variable_without_windows_has_no_figures_but_a_row() -> None:
-    made = read(report_page(report(Verdict.INCONCLUSIVE, windows=0)))
+    made = read(report_page(Examination(report(Verdict.INCONCLUSIVE, windows=0))))
 
     assert made.tags.count("figure") == 1
 
@@ -151,4 +158,4 @@ def test_a_variable_without_windows_has_no_figures_but_a_row() -> None:
 def test_the_same_report_gives_the_same_page() -> None:
     made = replace(report(), variables=report().variables[:1])
 
-    assert report_page(made) == report_page(made)
+    assert report_page(Examination(made)) == report_page(Examination(made))
