@@ -38,12 +38,14 @@ def verify(
     spec: Path | str | Program | None = None,
     clock: Clock = "auto",
     *,
+    strict: bool = False,
     only_verdict: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> Verification:
     """Judge a recording against its spec: the one given, else attached, else the project's.
 
     Args:
+        strict: any loss in the log is an error.
         only_verdict: leave out what explains the verdict.
         progress: is told what is done next, as a phrase.
 
@@ -57,7 +59,7 @@ def verify(
         found = find_spec(trace, None if spec is None else Path(spec), _without_running)
     tell = progress or _in_silence
     tell("reading")
-    read = read_trace(trace, found.program, clock)
+    read = read_trace(trace, found.program, clock, strict=strict)
     made = examine(found.program, read, only_verdict=only_verdict, progress=tell)
     return Verification(found, made)
 

@@ -42,6 +42,9 @@ def verify(
     clock: Annotated[
         Clock, typer.Option("--clock", help="Sensor stamps, log times, or the better of both.")
     ] = Clock.AUTO,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Any loss in the log (torn, corrupt) is an error.")
+    ] = False,
     form: FormatOption = Format.TEXT,
 ) -> int:
     """Judge a recording of a robot against its spec: PASS, FAIL or INCONCLUSIVE, and why.
@@ -62,7 +65,7 @@ def verify(
     for path in output:
         require_suffix(path, ".html", ".json", ".txt")
     warmed(spec)
-    verification = verifying.verify(trace, spec, clock.value)
+    verification = verifying.verify(trace, spec, clock.value, strict=strict)
     report = verification.report
     if form is Format.JSON:
         print_json({**as_json(report), "found_by": verification.found.how})

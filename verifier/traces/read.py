@@ -30,12 +30,15 @@ def read_trace(
     program: Program,
     clock: ClockWish = "auto",
     progress: Progress | None = None,
+    *,
+    strict: bool = False,
 ) -> Trace:
     """What the log says about the program's variables, in SI, with every loss counted.
 
     clock: which stamps are the times; `auto` takes the sensors' where that can be done for all
     topics on one clock. progress: is told now and then how many bytes of how many were read.
-    Raises SpecError V301 to V312, all at once, where nothing can be judged.
+    strict: any loss is an error. Raises SpecError V301 to V313, all at once, where nothing can
+    be judged.
     """
     log = open_log(path, Wanted(wanted_paths(program)), progress)
     if isinstance(log, MessageLog) and not log.streams:
@@ -49,12 +52,17 @@ def read_trace(
     runs = {name: _run(samples, clocks.of[name]) for name, samples in topics.items()}
     readings = _readings(program, bound, topics, runs, log.losses)
     start = min((int(reading.times[0]) for reading in readings), default=0)
+    losses = _losses(log, topics, runs, readings)
+    if strict and losses:
+        raise file_fault(
+            path, "V313", "the log is not whole, as --strict wants it", _damage(losses)
+        )
     return Trace(
         source=str(path),
         series={reading.bound.binding.name: _series(reading, start) for reading in readings},
         constants={b.name: b.constant for b in program.bindings if b.constant is not None},
         start=start / 1e9,
-        losses=_losses(log, topics, runs, readings),
+        losses=losses,
         notes=_notes(log, topics, runs, readings, clocks.notes),
     )
 

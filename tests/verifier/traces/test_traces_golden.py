@@ -19,7 +19,7 @@ from verifier.traces.read import read_trace
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "tests" / "golden" / "bad_logs"
 BAD = sorted(FOLDER.glob("*.yaml"))
-HEAD = re.compile(r"# log: (?P<log>\S+)(?:  clock: (?P<clock>\w+))?\n")
+HEAD = re.compile(r"# log: (?P<log>\S+)(?:  clock: (?P<clock>\w+))?(?P<strict>  strict)?\n")
 
 CSV = "t,x,y,broken,action\n" + "".join(f"{i / 10},{i},{i},nan,go\n" for i in range(20))
 
@@ -38,6 +38,7 @@ def logs(workshop: Any, make: Any) -> Path:
     workshop.text(b"\x89PNG\r\n\x1a\n" + bytes(50), "picture.png")
     workshop.text(CSV, "drive.csv")
     workshop.text(CSV.replace("t,x", "u,x"), "untimed.csv")
+    workshop.text("t,x,y\n" + "".join(f"{i},{i},{i}\n" for i in range(20)) + "20,2", "torn.csv")
     workshop.text(CSV.split("\n", 1)[1], "headless.csv")
     folder: Path = workshop.folder
     return folder
@@ -56,8 +57,9 @@ def test_a_log_that_cannot_be_used_is_explained(
     assert head is not None
     compiled = compile_file(Path(path.name), lambda *_: None)
 
+    clock: Any = head["clock"] or "auto"
     with pytest.raises(SpecError) as caught:
-        read_trace(Path(head["log"]), compiled.program, head["clock"] or "auto")  # type: ignore[arg-type]  # as written in the file
+        read_trace(Path(head["log"]), compiled.program, clock, strict=bool(head["strict"]))
 
     expect(path.with_suffix(".expected"), f"{caught.value}\n")
 

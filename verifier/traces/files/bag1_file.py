@@ -1,28 +1,30 @@
 """ROS 1 bags, format 2.0, record by record: a bag without its index gives its messages too.
 
-A record is a header of `name=value` fields and a body, each with its length before it.
 http://wiki.ros.org/Bags/Format/2.0
 """
 
-import bz2
 import mmap
 import struct
-from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import TypeAlias
 
-import lz4.frame
-
+from verifier.traces.files.bag1_records import (
+    CHUNK,
+    CONNECTION,
+    MESSAGE,
+    Bytes,
+    Record,
+    fields,
+    next_record,
+    number,
+    record_at,
+)
 from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.streams import Gathering
+from verifier.traces.files.unpacking import UnpackError, unpack, unpack_torn
 from verifier.traces.messages.channel import Channel
 
 MAGIC = b"#ROSBAG V2.0\n"
-LARGEST_CHUNK = 1 << 31
-
-_MESSAGE, _BAG, _CHUNK, _CONNECTION = 2, 3, 5, 7
-
-Header: TypeAlias = dict[bytes, bytes]
 
 
 def is_bag1(head: bytes) -> bool:
@@ -36,96 +38,110 @@ def read_bag1(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         if data[: len(MAGIC)] != MAGIC:
             gathering.lose("bag version", f"{bytes(data[:12])!r} is read as version 2.0")
-        _read_file(data, gathering)
+        _read_file(data, gathering, tell)
     return gathering.finished(str(path), "ROS 1 bag")
 
 
-def _read_file(data: mmap.mmap, gathering: Gathering[int]) -> None:
-    end = start = data.find(b"\n") + 1
-    for header, begin, end in _records(data, start):
-        body = data[begin : min(end, len(data))]
-        kind = _number(header.get(b"op", b""))
-        if kind == _CHUNK:
-            _read_chunk(header, body, begin, end - begin, gathering)
-        elif end <= len(data):
-            _read_record(kind, header, body, gathering)
-    if end > len(data):
-        gathering.lose("file cut", f"it ends at byte {len(data)}, in the middle of a record")
-    elif end < len(data):
-        gathering.lose("file cut or overwritten", f"nothing readable from byte {end} on")
+def _read_file(data: mmap.mmap, gathering: Gathering[int], tell: Progress) -> None:
+    position = data.find(b"\n") + 1
+    size = len(data)
+    while position < size:
+        record = record_at(data, position)
+        if record is None or (record.end > size and record.kind != CHUNK):
+            position = _skip(data, position, gathering)
+            continue
+        position = record.end
+        if record.kind == CHUNK:
+            position = _end(data, record)
+            if position != record.end:
+                detail = f"the length of the chunk at byte {record.begin} is wrong"
+                gathering.lose("damaged record", detail)
+            _read_chunk(data, replace(record, end=position), gathering)
+        else:
+            _read_record(record, data, gathering)
+        tell(min(position, size), size)
+    if position > size:
+        gathering.lose("file cut", f"it ends at byte {size}, in the middle of a record")
 
 
-def _records(data: mmap.mmap | bytes, position: int) -> Iterator[tuple[Header, int, int]]:
-    """Header, begin and end of the body of each record; the last may end beyond the data."""
-    while position + 4 <= len(data):
-        size = _number(data[position : position + 4])
-        fields = data[position + 4 : position + 4 + size]
-        if len(fields) < size or position + 8 + size > len(data):
-            return
-        header = _fields(fields)
-        begin = position + 8 + size
-        if header is None:
-            return
-        position = begin + _number(data[begin - 4 : begin])
-        yield header, begin, position
+def _end(data: Bytes, chunk: Record) -> int:
+    """Where the chunk ends: where its length says, or else where another record begins."""
+    if chunk.end >= len(data) or record_at(data, chunk.end):
+        return chunk.end
+    if chunk.header.get(b"compression", b"none") != b"none":
+        found = next_record(data, chunk.begin)
+        return found if found >= 0 else chunk.end
+    unpacked = chunk.begin + number(chunk.header.get(b"size", b""))
+    return unpacked if unpacked < len(data) and record_at(data, unpacked) else chunk.end
 
 
-def _fields(data: bytes) -> Header | None:
-    """The fields of a header; None where the bytes are not one."""
-    header: Header = {}
-    position = 0
-    while position < len(data):
-        size = _number(data[position : position + 4])
-        name, equals, value = data[position + 4 : position + 4 + size].partition(b"=")
-        position += 4 + size
-        if not equals or position > len(data):
-            return None
-        header[name] = value
-    return header
+def _skip(data: Bytes, start: int, gathering: Gathering[int]) -> int:
+    """The place of the next believable record; the bytes between are counted."""
+    found = next_record(data, start + 1)
+    if found < 0:
+        detail = f"nothing readable from byte {start} on"
+        gathering.lose("file cut or overwritten", detail)
+        return len(data)
+    detail = f"skipped from byte {start} to {found}"
+    gathering.lose("damaged bytes", detail, found - start)
+    return found
 
 
-def _read_chunk(
-    header: Header, body: bytes, place: int, claimed: int, gathering: Gathering[int]
-) -> None:
-    torn = len(body) < claimed
+def _read_chunk(data: Bytes, chunk: Record, gathering: Gathering[int]) -> None:
+    """The messages of one chunk; of a damaged one, those before the damage."""
+    compression = chunk.header.get(b"compression", b"none").decode(errors="replace")
+    compression = "" if compression == "none" else compression
+    claimed = number(chunk.header.get(b"size", b""))
+    body = data[chunk.begin : chunk.end]
+    torn = len(body) < chunk.end - chunk.begin
+    place = f"at byte {chunk.begin}"
+    before = gathering.count
     try:
-        inside = _inside(header, body, torn=torn)
-    except (ValueError, OSError, EOFError, RuntimeError, MemoryError) as error:
-        gathering.lose("corrupt chunk", f"at byte {place}: {error}")
+        inside, fault = _unpacked(compression, body, claimed, torn=torn)
+    except UnpackError as error:
+        gathering.lose("corrupt chunk", f"{place}: {error}")
         return
+    read = _walk(inside, gathering)
     if torn:
-        gathering.lose("torn chunk", f"at byte {place}: {len(body)} of {claimed} bytes")
-    position = 0
-    for fields, begin, end in _records(inside, 0):
-        position = end
-        if end <= len(inside):
-            _read_record(_number(fields.get(b"op", b"")), fields, inside[begin:end], gathering)
-    if position != len(inside) and not torn:
-        gathering.lose("corrupt chunk", f"at byte {place}: unreadable from its byte {position} on")
-
-
-def _inside(header: Header, body: bytes, *, torn: bool) -> bytes:
-    """The chunk's records, decompressed; of a torn chunk what can be had."""
-    compression = header.get(b"compression", b"none")
-    size = _number(header.get(b"size", b""))
-    if size > LARGEST_CHUNK:
-        raise ValueError(f"it claims {size} bytes")
-    if compression == b"none":
-        return body
-    if compression == b"bz2":
-        inside = bz2.BZ2Decompressor().decompress(body, max_length=size)
-    elif compression == b"lz4":
-        inside = bytes(lz4.frame.LZ4FrameDecompressor().decompress(body, max_length=size))
+        whole = chunk.end - chunk.begin
+        gathering.lose("torn chunk", f"{place}: {len(body)} of {whole} bytes")
+    elif fault or read != len(inside):
+        fault = fault or f"unreadable from its byte {read} on"
+        gathering.lose("corrupt chunk", f"{place}: {fault}")
+    elif len(inside) != claimed:
+        gathering.lose("corrupt chunk", f"{place}: {claimed} bytes expected, found {len(inside)}")
     else:
-        raise ValueError(f"compression {compression.decode(errors='replace')!r} is not supported")
-    if len(inside) < size and not torn:
-        raise ValueError(f"{size} bytes expected, {len(inside)} decompressed")
-    return inside
+        return
+    if (compression or not torn) and (found := gathering.count - before):
+        gathering.lose("unverified messages", f"read of the damaged chunk {place}", found)
 
 
-def _read_record(kind: int, header: Header, body: bytes, gathering: Gathering[int]) -> None:
-    if kind == _CONNECTION:
-        about = _fields(body) or {}
+def _unpacked(compression: str, body: bytes, size: int, *, torn: bool) -> tuple[bytes, str]:
+    """What can be had of the chunk, and what was wrong with it; raises UnpackError."""
+    if torn:
+        return unpack_torn(compression, body, size), ""
+    try:
+        return unpack(compression, body, size), ""
+    except UnpackError as error:
+        return unpack_torn(compression, body, size), str(error)
+
+
+def _walk(inside: bytes, gathering: Gathering[int]) -> int:
+    """Reads the records of a chunk; returns where the last whole one ends."""
+    position = 0
+    while position < len(inside):
+        record = record_at(inside, position)
+        if record is None or record.end > len(inside):
+            break
+        _read_record(record, inside, gathering)
+        position = record.end
+    return position
+
+
+def _read_record(record: Record, data: Bytes, gathering: Gathering[int]) -> None:
+    header = record.header
+    if record.kind == CONNECTION:
+        about = fields(data[record.begin : record.end]) or {}
         topic = header.get(b"topic", about.get(b"topic", b"")).decode(errors="replace")
         channel = Channel(
             topic=topic,
@@ -134,12 +150,11 @@ def _read_record(kind: int, header: Header, body: bytes, gathering: Gathering[in
             schema_encoding="ros1msg",
             schema=about.get(b"message_definition", b""),
         )
-        gathering.declare(_number(header.get(b"conn", b"")), channel)
-    elif kind == _MESSAGE and len(header.get(b"time", b"")) == 8:
+        gathering.declare(number(header.get(b"conn", b"")), channel)
+    elif record.kind == MESSAGE and len(header.get(b"time", b"")) == 8:
         seconds, nanoseconds = struct.unpack("<II", header[b"time"])
         log_time = seconds * 1_000_000_000 + nanoseconds
-        gathering.add(_number(header.get(b"conn", b"")), log_time, body, 0, len(body))
-
-
-def _number(data: bytes) -> int:
-    return int.from_bytes(data[:4], "little")
+        key = number(header.get(b"conn", b""))
+        gathering.add(key, log_time, data, record.begin, record.end)
+    elif record.kind == MESSAGE:
+        gathering.lose("corrupt record", "a message without a time")

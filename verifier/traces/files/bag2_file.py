@@ -1,23 +1,27 @@
-"""ROS 2 bags that are kept in SQLite (`.db3`), through the library rosbags."""
+"""ROS 2 bags that are kept in SQLite (`.db3`), row by row; of damaged ones, every row left."""
 
+import mmap
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 from typing import TypeAlias
+from urllib.parse import quote
 
-from rosbags.interfaces import Connection, MessageDefinitionFormat
-from rosbags.rosbag2 import Reader
-from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
+import zstandard
 
 from verifier.traces.files.log import MessageLog, Progress, Wanted
+from verifier.traces.files.sqlite_pages import Value, page_size, pages_claimed, stray_rows
 from verifier.traces.files.streams import Gathering
+from verifier.traces.files.unpacking import LARGEST
 from verifier.traces.messages.channel import Channel
 
-_SCHEMA_ENCODINGS = {
-    MessageDefinitionFormat.MSG: "ros2msg",
-    MessageDefinitionFormat.IDL: "ros2idl",
-    MessageDefinitionFormat.NONE: "",
-}
+Definitions: TypeAlias = dict[str, tuple[str, bytes]]
 
-AnyReader: TypeAlias = Reader | Sqlite3Reader
+_TOPICS = "SELECT id, name, type, serialization_format FROM topics ORDER BY id"
+_DEFINITIONS = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+_MESSAGES = "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id"
+_BATCH = 1000
+_ZSTD = b"\x28\xb5\x2f\xfd"
 
 
 def is_sqlite(head: bytes) -> bool:
@@ -26,43 +30,123 @@ def is_sqlite(head: bytes) -> bool:
 
 
 def read_bag2(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
-    """The messages of a bag: a folder with `metadata.yaml`, or one database file."""
-    gathering: Gathering[str] = Gathering(wanted)
-    reader: AnyReader = Reader(path) if path.is_dir() else Sqlite3Reader(path)
-    # The library meets damage with whatever exception comes first; all of them mean the same.
+    """The messages of one database; raises OSError."""
+    gathering: Gathering[int] = Gathering(wanted)
     try:
-        reader.open()
-    except Exception as error:  # noqa: BLE001  # see above
-        gathering.lose("bag can't be opened", _sentence(error))
-        return gathering.finished(str(path), "ROS 2 bag")
-    try:
-        _read_messages(reader, gathering)
-    except Exception as error:  # noqa: BLE001  # see above
-        gathering.lose("bag damaged", f"nothing is read after: {_sentence(error)}")
-    finally:
-        reader.close()
+        with closing(_open(path, gathering)) as database:
+            _read_topics(database, gathering)
+            _read_rows(database, gathering, tell, path.stat().st_size)
+    except sqlite3.Error as error:
+        # What the tree of pages does not lead to may still stand in its leaves.
+        gathering = Gathering(wanted)
+        gathering.lose("database damaged", _sentence(error))
+        _salvage(path, gathering, tell)
     return gathering.finished(str(path), "ROS 2 bag")
 
 
-def _read_messages(reader: AnyReader, gathering: Gathering[str]) -> None:
-    for connection in reader.connections:
-        gathering.declare(_key(connection), _channel(connection))
-    for connection, log_time, payload in reader.messages(reader.connections):
-        gathering.add(_key(connection), log_time, bytes(payload), 0, len(payload))
+def _open(path: Path, gathering: Gathering[int]) -> sqlite3.Connection:
+    """The database, with what a killed recorder left beside it; raises sqlite3.Error."""
+    name = quote(str(path.absolute()))
+    beside = path.with_name(f"{path.name}-wal")
+    database = sqlite3.connect(f"file:{name}?mode=ro", uri=True)
+    database.text_factory = lambda raw: raw.decode("utf-8", errors="replace")
+    try:
+        database.execute("PRAGMA trusted_schema = OFF")
+        database.execute("SELECT name FROM sqlite_master").fetchall()
+    except sqlite3.OperationalError:
+        if not beside.exists():
+            raise
+        database.close()
+        gathering.lose("write-ahead log not read", f"{beside.name} can't be opened")
+        database = sqlite3.connect(f"file:{name}?immutable=1", uri=True)
+    return database
 
 
-def _key(connection: Connection) -> str:
-    return f"{connection.id} {connection.topic}"
+def _read_topics(database: sqlite3.Connection, gathering: Gathering[int]) -> None:
+    tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
+    if not {"topics", "messages"} <= tables:
+        raise sqlite3.DatabaseError("it has no tables 'topics' and 'messages'")
+    definitions: Definitions = {}
+    if "message_definitions" in tables:
+        for name, encoding, text in database.execute(_DEFINITIONS):
+            definitions[str(name)] = (str(encoding), str(text).encode())
+    for number, name, kind, encoding in database.execute(_TOPICS):
+        gathering.declare(int(number), _channel(str(name), str(kind), str(encoding), definitions))
 
 
-def _channel(connection: Connection) -> Channel:
-    return Channel(
-        topic=connection.topic,
-        message_type=connection.msgtype,
-        encoding=getattr(connection.ext, "serialization_format", "cdr"),
-        schema_encoding=_SCHEMA_ENCODINGS[connection.msgdef.format],
-        schema=connection.msgdef.data.encode(),
-    )
+def _channel(name: str, kind: str, encoding: str, definitions: Definitions) -> Channel:
+    schema_encoding, schema = definitions.get(kind, ("", b""))
+    return Channel(name, kind, encoding, schema_encoding, schema)
+
+
+def _read_rows(
+    database: sqlite3.Connection, gathering: Gathering[int], tell: Progress, size: int
+) -> None:
+    rows = database.execute(_MESSAGES)
+    last = 0
+    done = 0
+    while batch := rows.fetchmany(_BATCH):
+        for number, topic, log_time, payload in batch:
+            _add(gathering, topic, log_time, payload)
+            done += len(payload) if isinstance(payload, bytes) else 0
+            last = number
+        tell(min(done, size), size)
+    if last > gathering.count:
+        gathering.notes.append(
+            f"messages are numbered up to {last}, but {gathering.count} are there"
+        )
+
+
+def _add(gathering: Gathering[int], topic: Value, log_time: Value, payload: Value) -> None:
+    if isinstance(topic, int) and isinstance(log_time, int) and isinstance(payload, bytes):
+        if log_time < 0:
+            gathering.lose("impossible log time", "before the year 1970")
+            return
+        if payload.startswith(_ZSTD):
+            unpacked = _unpacked(payload)
+            if unpacked is None:
+                gathering.lose("corrupt record", "a compressed message can't be unpacked")
+                return
+            payload = unpacked
+        gathering.add(topic, log_time, payload, 0, len(payload))
+    else:
+        gathering.lose("corrupt record", "a row of messages with values of other types")
+
+
+def _unpacked(payload: bytes) -> bytes | None:
+    try:
+        if zstandard.frame_content_size(payload) > LARGEST:
+            return None
+        return zstandard.ZstdDecompressor().decompress(payload, max_output_size=LARGEST)
+    except (zstandard.ZstdError, MemoryError):
+        return None
+
+
+def _salvage(path: Path, gathering: Gathering[int], tell: Progress) -> None:
+    """All rows that stand in whole pages, told apart by the types of their values."""
+    definitions: Definitions = {}
+    topics: dict[int, tuple[str, str, str]] = {}
+    last = 0
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        if pages_claimed(data) * page_size(data) > len(data):
+            gathering.lose("file cut", f"{pages_claimed(data)} pages expected")
+        for place, number, row in stray_rows(data):
+            match row:
+                case [None, int(topic), int(log_time), bytes(payload)]:
+                    _add(gathering, topic, log_time, payload)
+                    last = max(last, number)
+                case [None, str(name), str(kind), str(encoding), str(), *_] if name[:1] == "/":
+                    topics[number] = (name, kind, encoding)
+                case [None, str(name), str(encoding), str(text), *_] if "/" in name:
+                    definitions[name] = (encoding, text.encode())
+            tell(place, len(data))
+    for number, (name, kind, encoding) in topics.items():
+        gathering.declare(number, _channel(name, kind, encoding, definitions))
+    if gathering.count:
+        gathering.lose("unverified messages", "read of single pages", gathering.count)
+    if last > gathering.count:
+        detail = f"they are numbered up to {last}"
+        gathering.lose("messages missing", detail, last - gathering.count)
 
 
 def _sentence(error: Exception) -> str:

@@ -22,14 +22,14 @@ from verifier.traces.files.mcap_records import (
     MESSAGE,
     chunk_head,
     follows,
-    is_record,
+    is_filled,
     next_record,
     parse,
 )
 from verifier.traces.files.mcap_summary import read_summary
 
 _PIECE = 1 << 24
-_KNOWN = frozenset(int(opcode) for opcode in Opcode)
+_FIXED: dict[int, int] = {Opcode.DATA_END: 4, Opcode.FOOTER: 20}
 
 
 def is_mcap(head: bytes) -> bool:
@@ -117,9 +117,9 @@ class _Walk:
         """Whether the record can be taken for one. A wrong length leads into other bytes."""
         if opcode == Opcode.MESSAGE:
             return end - begin >= MESSAGE.size and follows(self.data, end)
-        if opcode in {Opcode.DATA_END, Opcode.FOOTER}:
-            return is_record(self.data, begin - HEAD.size, loose=True) or opcode == Opcode.FOOTER
-        return opcode in _KNOWN or follows(self.data, end)
+        if opcode in _FIXED:
+            return end - begin == _FIXED[opcode]
+        return follows(self.data, end) or is_filled(self.data, opcode, begin, end)
 
     def _chunk(self, begin: int, claimed: int) -> bool:
         head = chunk_head(self.data, begin, claimed)

@@ -23,7 +23,7 @@ _CHUNK_HEAD = struct.Struct("<QQQII")
 
 COMPRESSIONS = frozenset({"", "lz4", "zstd"})
 _OPCODES = frozenset(int(opcode) for opcode in Opcode)
-_FIXED = {Opcode.DATA_END: 4, Opcode.FOOTER: 20, Opcode.SUMMARY_OFFSET: 17}
+_FIXED: dict[int, int] = {Opcode.DATA_END: 4, Opcode.FOOTER: 20, Opcode.SUMMARY_OFFSET: 17}
 # A record's head: an opcode, and a length below 2^40.
 _CANDIDATE = re.compile(rb"(?=[\x01-\x0f].{5}\x00\x00\x00)", re.DOTALL)
 
@@ -105,11 +105,16 @@ def is_record(data: Bytes, position: int, *, loose: bool) -> bool:
     if end > len(data) or not follows(data, end):
         return False
     if opcode in _FIXED:
-        return length == _FIXED[opcode]
+        return bool(length == _FIXED[opcode])
     if opcode == Opcode.MESSAGE:
         return loose and length >= MESSAGE.size and _is_chain(data, end)
+    return is_filled(data, opcode, begin, end) and (loose or opcode not in _INNER)
+
+
+def is_filled(data: Bytes, opcode: int, begin: int, end: int) -> bool:
+    """Whether the parts of the record take just the bytes that it claims."""
     reader = _READERS.get(opcode)
-    return bool(reader and reader(bytes(data[begin:end])) and (loose or opcode not in _INNER))
+    return reader is not None and reader(bytes(data[begin:end]))
 
 
 def _follows(data: Bytes, position: int) -> bool:
@@ -135,7 +140,17 @@ def _is_index(body: bytes) -> bool:
 
 
 def _is(kind: type[Record]) -> Callable[[bytes], bool]:
-    return lambda body: parse(kind, body) is not None
+    return lambda body: _fills(kind, body)
+
+
+def _fills(kind: type[Record], body: bytes) -> bool:
+    """Whether the record takes all of the bytes."""
+    stream = ReadDataStream(io.BytesIO(body))
+    try:
+        kind.read(stream)
+    except _MALFORMED:
+        return False
+    return bool(stream.count == len(body))
 
 
 _INNER = frozenset({Opcode.MESSAGE, Opcode.SCHEMA, Opcode.CHANNEL})

@@ -70,17 +70,25 @@ def _read_file(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
 
 
 def _read_folder(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
-    """A folder of MCAP files that belong together, or a ROS 2 bag."""
-    # An empty part, as a recorder leaves when it is killed, holds nothing to read.
-    parts = sorted(part for part in path.glob("*.mcap") if part.stat().st_size > 0)
-    if parts:
-        return _joined(path, [read_mcap(part, wanted, tell) for part in parts])
-    if (path / "metadata.yaml").is_file():
+    """A folder of files that belong together: MCAP, or a ROS 2 bag of either kind."""
+    parts = sorted(path.glob("*.mcap")) or sorted(path.glob("*.db3"))
+    if not parts:
+        message = "the folder holds no log that specc knows"
+        raise file_fault(path, "V302", message, f"known: {_KINDS}")
+    # An empty part is what a recorder leaves when it is killed.
+    empty = [part for part in parts if part.stat().st_size == 0]
+    logs = [_read_part(part, wanted, tell) for part in parts if part not in empty]
+    if not logs:
+        raise file_fault(path, "V302", "every log in the folder is empty")
+    lost = tuple(Loss("empty file", 1, part.name) for part in empty)
+    joined = _joined(path, logs)
+    return replace(joined, losses=(*lost, *joined.losses))
+
+
+def _read_part(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
+    if is_sqlite(_head(path)):
         return read_bag2(path, wanted, tell)
-    databases = sorted(path.glob("*.db3"))
-    if databases:
-        return _joined(path, [read_bag2(part, wanted, tell) for part in databases])
-    raise file_fault(path, "V302", "the folder holds no log that specc knows", f"known: {_KINDS}")
+    return read_mcap(path, wanted, tell)
 
 
 def _joined(path: Path, logs: Sequence[MessageLog]) -> MessageLog:

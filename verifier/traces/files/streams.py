@@ -81,9 +81,7 @@ class Gathering(Generic[Key]):
             stream.reader, stream.room = None, 0
             stream.times, stream.places, stream.payloads = array("q"), array("I"), []
 
-    def add(
-        self, key: Key, log_time: int, data: bytes | mmap.mmap, begin: int, end: int
-    ) -> None:
+    def add(self, key: Key, log_time: int, data: bytes | mmap.mmap, begin: int, end: int) -> None:
         """A message at `log_time` >= 0 nanoseconds, whose payload is `data[begin:end]`."""
         if log_time > LATEST:
             self.lose("impossible log time", "after the year 2096")
