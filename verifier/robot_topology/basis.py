@@ -71,7 +71,7 @@ def basis_on(points: Array, turns: Array) -> Basis:
 
 
 def functions(basis: Basis, points: Array) -> Array:
-    """phi (..., K) at points (..., m)."""
+    """Phi (..., K) at points (..., m)."""
     kernel = np.exp(-0.5 * _distance(points, basis.places, basis.lengths, basis.turns))
     return np.asarray(kernel @ basis.root)
 

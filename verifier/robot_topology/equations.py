@@ -180,7 +180,7 @@ def _paths(job: Job, start: Array, coefficients: Array) -> Array:
 
 
 def _sensitivities(job: Job, states: Array, coefficients: Array) -> Array:
-    """d path / d (start, c): (W, S + 1, D, D + P), by the trapezoidal rule along the path."""
+    """D path / d (start, c): (W, S + 1, D, D + P), by the trapezoidal rule along the path."""
     field = job.field
     axes, each = len(field.columns), field.basis.count + 1
     slope = np.nan_to_num(corrected_slopes(field, states, job.controls, coefficients))
@@ -198,9 +198,7 @@ def _sensitivities(job: Job, states: Array, coefficients: Array) -> Array:
         middle = 0.5 * seconds * (slope[:, s] + slope[:, s + 1])
         carried = np.eye(axes) + middle + 0.5 * middle @ middle
         found[:, s + 1] = carried @ found[:, s]
-        found[:, s + 1, :, axes:] += (
-            0.5 * seconds * (carried @ driven[:, s] + driven[:, s + 1])
-        )
+        found[:, s + 1, :, axes:] += 0.5 * seconds * (carried @ driven[:, s] + driven[:, s + 1])
     return found
 
 

@@ -112,9 +112,7 @@ def _rests(scene: Scene, stretch: Stretch, settling: float) -> list[Rest]:
     sums = np.concatenate([np.zeros((1, stretch.values.shape[1])), np.cumsum(stretch.values, 0)])
     means = (sums[span:] - sums[:-span]) / span
     moved = np.abs(means[span:] - means[:-span])
-    allowed = np.maximum(
-        SHARE * allowance(scene), SURE * scene.noise * np.sqrt(2.0 / span)
-    )
+    allowed = np.maximum(SHARE * allowance(scene), SURE * scene.noise * np.sqrt(2.0 / span))
     calm = np.all(moved <= allowed, axis=-1)
     found = []
     for first, last in _runs(calm):

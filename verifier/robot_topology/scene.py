@@ -96,9 +96,7 @@ def scene_of(program: Program, needs: Needs, study: Study | None) -> Scene:
 def shortest(differences: Array, turns: Array) -> Array:
     """Differences (..., m) with angles on the shorter way round."""
     safe = np.where(turns > 0.0, turns, 1.0)
-    return np.where(
-        turns > 0.0, differences - safe * np.rint(differences / safe), differences
-    )
+    return np.where(turns > 0.0, differences - safe * np.rint(differences / safe), differences)
 
 
 def _base(needs: Needs) -> Array:

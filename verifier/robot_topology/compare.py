@@ -1,0 +1,98 @@
+"""The robot's topology beside the spec's, feature by feature.
+
+Attractors are looked for where the robot rests, cycles in its laps: the trace itself tells. The
+field refitted to the trace tells the same a second way, and all that nobody rests at: saddles and
+other places that repel. What the trace does not reach is said to be not visited.
+"""
+
+from typing import Final
+
+import numpy as np
+
+from runtime.program import Program
+from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.stretches.needs import needs_of
+from verifier.report.features import ComparedFeature, Features
+from verifier.robot_topology.cycle_features import cycle_features
+from verifier.robot_topology.point_features import point_features
+from verifier.robot_topology.refit import refitted
+from verifier.robot_topology.refitted_points import RefitView
+from verifier.robot_topology.resting_places import resting_places
+from verifier.robot_topology.rests import allowance
+from verifier.robot_topology.robot_alone import rests_of_robot_alone
+from verifier.robot_topology.scene import Scene, scene_of
+from verifier.topology.slices import SliceError
+from verifier.topology.words import settings_words
+from verifier.traces.trace import Trace
+
+CONFIDENCE: Final = 0.95
+SEED: Final = 6_180
+"""Of draws and resamples: the same trace gives the same features."""
+DRAWS: Final = 48
+MOST: Final = 0.98
+"""Of the time; where the setting held for less, it is told for how much."""
+LEAST: Final = 0.05
+"""Of the time that a setting must hold for anything to be seen directly."""
+
+
+def compare_features(program: Program, trace: Trace, study: Study | None) -> Features:
+    """The features of `program` beside those of the robot in `trace`.
+
+    study: of the same trace, as the verdict rests on it; without one nothing is refitted.
+    """
+    needs = needs_of(program, trace)
+    if needs.missing or not needs.series:
+        return _nothing(f"not compared: the trace lacks {', '.join(needs.missing)}")
+    try:
+        scene = scene_of(program, needs, study)
+    except SliceError as error:
+        return _nothing(f"not compared: {error}")
+    rng = np.random.default_rng(SEED)
+    refit = None if study is None else refitted(study, allowance(scene))
+    view = None if refit is None else RefitView(scene, refit, refit.draws(DRAWS, rng), CONFIDENCE)
+    places = resting_places(scene, CONFIDENCE)
+    features = (
+        *point_features(scene, view, places),
+        *cycle_features(scene, view, CONFIDENCE, rng),
+        *rests_of_robot_alone(scene, places),
+    )
+    return Features(
+        axes=tuple(axis.name for axis in scene.axes),
+        units=tuple(axis.unit for axis in scene.axes),
+        settings=scene.setting.values,
+        features=tuple(sorted(features, key=_order)),
+        notes=_notes(scene, is_refitted=refit is not None, any_=bool(features)),
+        confidence=CONFIDENCE,
+    )
+
+
+def _nothing(note: str) -> Features:
+    return Features((), (), (), (), (note,), CONFIDENCE)
+
+
+def _order(feature: ComparedFeature) -> tuple[bool, bool]:
+    """Declared features first, those of the robot alone last."""
+    return not feature.in_spec, not feature.is_declared
+
+
+def _notes(scene: Scene, *, is_refitted: bool, any_: bool) -> tuple[str, ...]:
+    notes = []
+    share, values = scene.setting.share, settings_words(scene.program, scene.setting.values)
+    if share < MOST and values:
+        notes.append(
+            f"the inputs varied: features are those at {values}, which held for"
+            f" {100.0 * share:.0f} % of the time"
+        )
+    if not is_refitted and any_:
+        notes.append(f"the field was not refitted: {_why_not(scene)}")
+    if not any_:
+        notes.append("neither the spec nor the robot has a fixed point or a cycle here")
+    return tuple(notes)
+
+
+def _why_not(scene: Scene) -> str:
+    if scene.program.field.is_map:
+        return "the behavior is a step map; what was seen in the trace itself is told"
+    if scene.program.field.mode:
+        return "the behavior has modes; what was seen in the trace itself is told"
+    return "too few windows of one horizon were judged"

@@ -1,0 +1,123 @@
+"""Cycles of the spec beside those of the robot."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from runtime.claim import Claim
+from runtime.program import Unit
+from verifier.report.features import ComparedFeature, Estimate, FeatureNumber, FeatureStanding
+from verifier.robot_topology.declared import claim_on, period_allowed, reach_allowed
+from verifier.robot_topology.laps import laps_of, on_cycle, period_of_laps
+from verifier.robot_topology.loops import MeanLap, mean_lap
+from verifier.robot_topology.refitted_cycles import RefittedCycle, refitted_cycle
+from verifier.robot_topology.refitted_points import RefitView
+from verifier.robot_topology.scene import Scene
+from verifier.robot_topology.standing import standing_of, together
+from verifier.robot_topology.wording import sentence_on
+from verifier.topology.features import Cycle
+from verifier.topology.names import cycle_names
+
+DRAWN = 120
+"""Points of a loop for drawing."""
+SECOND = Unit("s", 1.0)
+
+
+def cycle_features(
+    scene: Scene, view: RefitView | None, confidence: float, rng: np.random.Generator
+) -> tuple[ComparedFeature, ...]:
+    """Every cycle of the spec; those of a step map are left out."""
+    if scene.program.field.is_map:
+        return ()
+    return tuple(
+        _feature(scene, i, None if view is None else refitted_cycle(view, cycle), confidence, rng)
+        for i, cycle in enumerate(scene.portrait.cycles)
+    )
+
+
+def _feature(
+    scene: Scene,
+    index: int,
+    refit: RefittedCycle | None,
+    confidence: float,
+    rng: np.random.Generator,
+) -> ComparedFeature:
+    cycle = scene.portrait.cycles[index]
+    claim = claim_on(scene, is_cycle=True, index=index)
+    laps = laps_of(scene, cycle)
+    count = sum(each.count for each in laps)
+    period = period_of_laps(laps, confidence)
+    lap = None if period is None else mean_lap(laps, cycle, confidence, rng)
+    numbers = _numbers(scene, cycle, claim, (period, lap), refit)
+    robot = lap.points if lap is not None else refit.loop if refit is not None else None
+    plain = ComparedFeature(
+        kind=f"{cycle.stability} cycle",
+        name=f"{cycle.stability} {cycle_names(scene.portrait)[index]}",
+        claim="" if claim is None else claim.text,
+        origin=scene.program.field.origin if claim is None else claim.origin,
+        in_spec=True,
+        is_cycle=True,
+        numbers=numbers,
+        standing=together(numbers),
+        visits=count,
+        spec_path=on_cycle(cycle, np.arange(DRAWN + 1) / DRAWN),
+        robot_path=np.empty((0, len(scene.axes))) if robot is None else robot,
+        sentence="",
+    )
+    return replace(plain, sentence=sentence_on(plain, _manner(plain, is_seen=lap is not None)))
+
+
+def _numbers(
+    scene: Scene,
+    cycle: Cycle,
+    claim: Claim | None,
+    seen: tuple[Estimate | None, MeanLap | None],
+    refit: RefittedCycle | None,
+) -> tuple[FeatureNumber, ...]:
+    """The period, the amplitude on each axis, and the ends where a claim speaks of them."""
+    period, lap = seen
+    spec = on_cycle(cycle, np.arange(4 * DRAWN) / (4 * DRAWN))
+    low, high = spec.min(axis=0), spec.max(axis=0)
+    allowed = period_allowed(scene, claim, cycle)
+    by_refit = None if refit is None else refit.period
+    found = [_number("period", SECOND, cycle.period, (period, by_refit), allowed)]
+    claimed = set() if claim is None else {reach.state for reach in claim.reaches}
+    for j, axis in enumerate(scene.axes):
+        if cycle.turns[j]:
+            continue
+        allowed = reach_allowed(scene, claim, j)
+        values = (0.5 * (high[j] - low[j]), low[j], high[j])
+        names = (f"amplitude of {axis.name}", f"lowest {axis.name}", f"highest {axis.name}")
+        both = [
+            (None, None, None)
+            if each is None
+            else (each.amplitude[j], each.lowest[j], each.highest[j])
+            for each in (lap, refit)
+        ]
+        wanted = range(3) if axis.name in claimed else range(1)
+        found += [
+            _number(names[k], axis.unit, float(values[k]), (both[0][k], both[1][k]), allowed)
+            for k in wanted
+        ]
+    return tuple(found)
+
+
+def _number(
+    name: str,
+    unit: Unit,
+    spec: float,
+    robot: tuple[Estimate | None, Estimate | None],
+    allowed: tuple[float, str],
+) -> FeatureNumber:
+    tolerance, by = allowed
+    standing = standing_of(spec, robot[0] or robot[1], tolerance, 0.0)
+    return FeatureNumber(name, unit, spec, robot[0], robot[1], tolerance, by, standing)
+
+
+def _manner(feature: ComparedFeature, *, is_seen: bool) -> str:
+    """How the robot's cycle was found, as a verb."""
+    if is_seen:
+        return f"makes {feature.visits} laps with a"
+    if feature.standing is FeatureStanding.NOT_VISITED:
+        return "does not make three laps of it"
+    return "by its refitted field, has one with a"

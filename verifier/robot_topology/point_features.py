@@ -1,0 +1,119 @@
+"""Fixed points of the spec beside those of the robot."""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from runtime.claim import Claim
+from verifier.report.features import (
+    ComparedFeature,
+    Estimate,
+    FeatureNumber,
+    FeatureStanding,
+)
+from verifier.report.report import Interval
+from verifier.robot_topology.declared import claim_on, place_allowed
+from verifier.robot_topology.refitted_points import RefittedPoint, RefitView, refitted_point
+from verifier.robot_topology.resting_places import RestingPlace
+from verifier.robot_topology.scene import Scene
+from verifier.robot_topology.standing import standing_of, together
+from verifier.robot_topology.wording import sentence_on
+from verifier.topology.features import FixedPoint
+from verifier.topology.names import point_name
+
+NEARLY_ALL: Final = 0.95
+
+
+def point_features(
+    scene: Scene, view: RefitView | None, places: tuple[RestingPlace, ...]
+) -> tuple[ComparedFeature, ...]:
+    """Every fixed point of the spec that is one of the whole behavior."""
+    rests = {place.attractor: place for place in places}
+    return tuple(
+        _feature(scene, i, None if view is None else refitted_point(view, point), rests.get(i))
+        for i, point in enumerate(scene.portrait.fixed_points)
+        if not point.drifts
+    )
+
+
+def _feature(
+    scene: Scene, index: int, refit: RefittedPoint | None, rest: RestingPlace | None
+) -> ComparedFeature:
+    point = scene.portrait.fixed_points[index]
+    claim = claim_on(scene, is_cycle=False, index=index)
+    near = refit if refit is not None and refit.is_visited else None
+    numbers = tuple(
+        _number(scene, point, claim, j, _seen(scene, point, rest, j), _refitted(near, j))
+        for j in range(len(scene.axes))
+    )
+    robot = [n.robot.value for n in numbers if n.robot is not None]
+    plain = ComparedFeature(
+        kind=str(point.kind),
+        name=point_name(scene.portrait, index),
+        claim="" if claim is None else claim.text,
+        origin=scene.program.field.origin if claim is None else claim.origin,
+        in_spec=True,
+        is_cycle=False,
+        numbers=numbers,
+        standing=_standing(numbers, near, is_seen=rest is not None),
+        visits=rest.visits if rest is not None else 0 if refit is None else refit.passes,
+        spec_path=point.at[None, :],
+        robot_path=np.array([robot]) if robot else np.empty((0, len(scene.axes))),
+        sentence="",
+    )
+    return replace(plain, sentence=sentence_on(plain, _manner(plain, near, rest)))
+
+
+def _seen(scene: Scene, point: FixedPoint, rest: RestingPlace | None, j: int) -> Estimate | None:
+    """Where the robot rests on axis j, on the turn of the spec's point."""
+    if rest is None:
+        return None
+    turn, at = float(scene.turns[j]), rest.at[j]
+    off = turn * np.rint((at.value - point.at[j]) / turn) if turn > 0.0 else 0.0
+    moved = Interval(float(at.interval.low - off), float(at.interval.high - off))
+    return Estimate(float(at.value - off), moved)
+
+
+def _refitted(refit: RefittedPoint | None, j: int) -> Estimate | None:
+    return refit.at[j] if refit is not None and refit.at is not None else None
+
+
+def _number(
+    scene: Scene,
+    point: FixedPoint,
+    claim: Claim | None,
+    j: int,
+    seen: Estimate | None,
+    refit: Estimate | None,
+) -> FeatureNumber:
+    axis = scene.axes[j]
+    tolerance, by = place_allowed(scene, claim, j)
+    spec = float(point.at[j])
+    standing = standing_of(spec, seen or refit, tolerance, float(scene.turns[j]))
+    return FeatureNumber(axis.name, axis.unit, spec, seen, refit, tolerance, by, standing)
+
+
+def _standing(
+    numbers: tuple[FeatureNumber, ...], near: RefittedPoint | None, *, is_seen: bool
+) -> FeatureStanding:
+    """With what the refit says of the type; a point that is gone is one too far away."""
+    if is_seen or near is None:
+        return together(numbers)
+    if near.alike <= 1.0 - NEARLY_ALL:
+        return FeatureStanding.EXCEEDED
+    is_sure = near.at is not None and near.alike >= NEARLY_ALL
+    return together(numbers) if is_sure else FeatureStanding.UNDECIDED
+
+
+def _manner(feature: ComparedFeature, near: RefittedPoint | None, rest: RestingPlace | None) -> str:
+    """How the robot's place was found, as a verb."""
+    if rest is not None:
+        return f"rests {'once' if rest.visits == 1 else f'{rest.visits} times'} at"
+    if near is None:
+        return "does not come near it"
+    if near.at is None:
+        return "goes past, but its refitted field has none near"
+    if feature.standing is FeatureStanding.EXCEEDED and near.alike <= 1.0 - NEARLY_ALL:
+        return "by its refitted field, has one of another type at"
+    return "by its refitted field, has it at"

@@ -1,0 +1,78 @@
+"""Sentences on features, for an engineer who has not read about any of this."""
+
+import math
+
+from runtime.program import Unit
+from verifier.report.features import (
+    ComparedFeature,
+    Estimate,
+    FeatureNumber,
+    FeatureStanding,
+)
+from verifier.report.wording import listed, quantity, shown, suffix
+
+DIGITS = 2
+"""Significant digits of a half interval."""
+
+
+def estimate_words(estimate: Estimate, unit: Unit) -> str:
+    """A value with half its interval: `6.74 ± 0.003 s`, digits as the interval has them."""
+    half = 0.5 * (estimate.interval.high - estimate.interval.low) / unit.scale
+    value = estimate.value / unit.scale
+    if not math.isfinite(half):
+        return f"about {shown(estimate.value, unit)}{suffix(unit)}"
+    if half <= 0.0:
+        return quantity(estimate.value, unit)
+    decimals = max(0, min(9, DIGITS - 1 - math.floor(math.log10(half))))
+    return f"{value:.{decimals}f} ± {half:.{decimals}f}{suffix(unit)}"
+
+
+def sentence_on(feature: ComparedFeature, manner: str) -> str:
+    """The sentence on a feature of the spec; `manner`: how the robot's was found, as a verb."""
+    head = f"{feature.name[:1].upper()}{feature.name[1:]}"
+    if feature.standing is FeatureStanding.NOT_VISITED:
+        return f"{head}: the robot {manner} in this trace."
+    told = [number for number in feature.numbers if number.robot is not None]
+    if not told:
+        return f"{head}: the robot {manner}."
+    robot = listed([_robot_words(number) for number in told])
+    return f"{head}: the robot {manner} {robot}; {_judgement(feature)}."
+
+
+def _robot_words(number: FeatureNumber) -> str:
+    assert number.robot is not None, "only what was found is told"
+    link = " of " if number.name == "period" or " " in number.name else " = "
+    return f"{number.name}{link}{estimate_words(number.robot, number.unit)}"
+
+
+def _judgement(feature: ComparedFeature) -> str:
+    worst = [n for n in feature.numbers if n.standing is FeatureStanding.EXCEEDED]
+    if worst:
+        return listed([_excess(number) for number in worst])
+    open_ = [n for n in feature.numbers if n.standing is FeatureStanding.UNDECIDED]
+    if not open_ and feature.standing is FeatureStanding.WITHIN:
+        return f"within {_allowed_by(feature.numbers)}"
+    unlimited = [n for n in open_ if not math.isfinite(n.tolerance)]
+    if unlimited:
+        names = listed([n.name for n in unlimited])
+        return f"no tolerance says how far {names} may be off"
+    names = listed([f"{n.name} ({_room(n)} allowed)" for n in open_])
+    return f"not decided for {names}: more time there would tell"
+
+
+def _excess(number: FeatureNumber) -> str:
+    assert number.robot is not None, "nothing unknown is exceeded"
+    allowed = quantity(number.tolerance, number.unit)
+    return (
+        f"the spec has {number.name} {quantity(number.spec, number.unit)}, and"
+        f" {number.allowed_by} allows {allowed} more or less"
+    )
+
+
+def _allowed_by(numbers: tuple[FeatureNumber, ...]) -> str:
+    """`the tolerance`, or `the claim and the tolerance`."""
+    return listed(sorted({n.allowed_by for n in numbers if math.isfinite(n.tolerance)}))
+
+
+def _room(number: FeatureNumber) -> str:
+    return f"± {quantity(number.tolerance, number.unit)}"
