@@ -87,6 +87,8 @@ def _axis(axis: Axis) -> str:
 def _verification(program: Program) -> Iterator[str]:
     if program.fidelity is not None:
         tolerance = ", ".join(f"{n} {v!r}" for n, v in sorted(program.fidelity.tolerance.items()))
+        scatter = ", ".join(f"{n} {v!r}" for n, v in sorted(program.fidelity.scatter.items()))
+        tolerance += f" scatter {scatter}" if scatter else ""
         rest = f"horizon {program.fidelity.horizon!r} s coverage {program.fidelity.coverage!r}"
         yield _line("fidelity", tolerance, rest, program.fidelity.origin)
     for binding in program.bindings:
@@ -94,6 +96,7 @@ def _verification(program: Program) -> Iterator[str]:
         details = f" delay {binding.delay!r}" if binding.delay else ""
         details += f" scale {binding.scale!r}" if binding.scale != 1.0 else ""
         details += f" offset {binding.offset!r}" if binding.offset else ""
+        details += f" noise {binding.noise!r}" if binding.noise is not None else ""
         yield _line(
             "trace", binding.name, f"{source} [{binding.unit.text}]{details}", binding.origin
         )

@@ -72,6 +72,10 @@ def lower_fidelity(
         name: _positive(value, declared.units.get(name), (*base, "tolerance", name), findings)
         for name, value in spec.fidelity.tolerance.items()
     }
+    scatter = {
+        name: _positive(value, declared.units.get(name), (*base, "scatter", name), findings)
+        for name, value in spec.fidelity.scatter.items()
+    }
     horizon = _positive(spec.fidelity.horizon, SECOND, (*base, "horizon"), findings)
     region = {}
     variables = {variable.name for variable in declared.variables}
@@ -86,7 +90,7 @@ def lower_fidelity(
         if pair[0] is not None and pair[1] is not None:
             region[name] = _part_of_domain(name, (pair[0], pair[1]), declared, path, findings)
     coverage = spec.fidelity.coverage
-    return Fidelity(tolerance, horizon, region, coverage, loaded.origin(base))
+    return Fidelity(tolerance, horizon, region, coverage, loaded.origin(base), scatter)
 
 
 def _positive(value: float | str, unit: SpecUnit | None, path: Path, findings: Findings) -> float:
@@ -154,8 +158,21 @@ def _binding(
         offset=_offset(entry, own, (*path, "offset"), findings),
         constant=constant,
         values=_values(name, entry, declared),
+        noise=_noise(entry, own, (*path, "noise"), findings),
         origin=loaded.origin(path),
     )
+
+
+def _noise(
+    entry: TraceEntry, unit: SpecUnit | None, path: Path, findings: Findings
+) -> float | None:
+    if entry.noise is None:
+        return None
+    found = si_value(entry.noise, unit, path, findings)
+    if found is not None and found <= 0.0:
+        message = f"the noise of '{path[1]}' must be positive (got {entry.noise})"
+        findings.error("S212", path, message, "leave it out to have it estimated")
+    return found
 
 
 def _constant(

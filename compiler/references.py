@@ -127,8 +127,10 @@ def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) 
         (("realizes",), spec.realizes, driven, "driven state"),
     ]
     if spec.fidelity is not None:
+        judged = spec.fidelity.tolerance
         sections += [
             (("fidelity", "tolerance"), spec.fidelity.tolerance, driven, "driven state"),
+            (("fidelity", "scatter"), spec.fidelity.scatter, [*judged], "state with a tolerance"),
             (("fidelity", "region"), spec.fidelity.region, readable, "state or control"),
         ]
     for path, names, known, what in sections:

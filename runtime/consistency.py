@@ -44,7 +44,8 @@ def _named(program: Program) -> Iterator[str]:
         yield f"two variables are named '{name}'"
     if program.fidelity:
         known = {*program.register, *outputs}
-        for name in {*program.fidelity.tolerance, *program.fidelity.region} - known:
+        fidelity = program.fidelity
+        for name in {*fidelity.tolerance, *fidelity.scatter, *fidelity.region} - known:
             yield f"fidelity speaks of '{name}', which does not exist"
     if not program.states:
         yield "the program has no state"

@@ -216,7 +216,8 @@ class Binding:
 
     The measurement at log time t speaks of time `t - delay`. `path` is empty and `constant` set
     for a variable that was not logged and is declared constant. values: of a discrete variable
-    or signal, each text that the log may hold and the index that it stands for.
+    or signal, each text that the log may hold and the index that it stands for. noise: the
+    standard deviation of the sensor's noise, None where it is to be estimated.
     """
 
     name: str
@@ -228,6 +229,7 @@ class Binding:
     constant: float | None
     values: tuple[tuple[str, int], ...]
     origin: str
+    noise: float | None = None
 
 
 @final

@@ -105,6 +105,12 @@ class Fidelity(StrictModel):
         "state that is judged: a plain number in its unit.",
         examples=[{"x": "0.05 m"}],
     )
+    scatter: Mapping[Name, Quantity] = Field(
+        default={},
+        description="By how much (standard deviation) single runs of a restless robot may depart "
+        "beside the tolerance: a plain number in the state's unit.",
+        examples=[{"x": "0.1 m"}],
+    )
     horizon: Quantity = Field(
         description="How far ahead is predicted, a plain number in seconds.", examples=["2 s"]
     )

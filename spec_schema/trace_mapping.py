@@ -66,6 +66,12 @@ class TraceEntry(StrictModel):
         description="The unit of the logged number; without it, the SI unit: m, m/s, rad.",
         examples=["deg"],
     )
+    noise: Quantity | None = Field(
+        default=None,
+        description="The standard deviation of the sensor's noise, a plain number in the "
+        "variable's unit; without it, it is estimated from the log.",
+        examples=["0.01 m"],
+    )
     values: RawValues | None = Field(
         default=None,
         description="Of a discrete variable: which text in the log means which declared value. Of "
@@ -93,7 +99,7 @@ class TraceEntry(StrictModel):
                 on_key=True,
             )
         if self.constant is not None:
-            for key in ("path", "delay", "scale", "offset", "unit", "values"):
+            for key in ("path", "delay", "scale", "offset", "unit", "noise", "values"):
                 if key in self.model_fields_set:
                     message = f"a constant was not logged, so it has no {quoted(key)}"
                     yield Mistake(

@@ -361,3 +361,66 @@ def test_a_pass_that_standing_still_would_earn_says_so(scenes: ModuleType) -> No
 
     assert report.verdict is Verdict.PASS
     assert "a spec in which it stays where it is would pass as well" in report.reasons[1]
+
+
+def restless(scenes: ModuleType, seed: int, seconds: float, unrest: float) -> tuple[Program, Trace]:
+    """A robot that follows x' = -x + u but for white unrest, exact between its samples."""
+    spec = scenes.program(
+        (scenes.state("x", -5.0, 5.0),),
+        (scenes.control("u", -2.0, 2.0, 0.0),),
+        {"x": "u x sub"},
+        scenes.fidelity({"x": 0.1}, 1.0),
+    )
+    rng = np.random.default_rng(seed)
+    times = np.arange(0.0, seconds, 0.05)
+    u = np.repeat(rng.uniform(-1.0, 1.0, len(times) // 20 + 1), 20)[: len(times)]
+    x = np.zeros(len(times))
+    decay = np.exp(-0.05)
+    for k in range(len(times) - 1):
+        kick = unrest * np.sqrt((1.0 - decay**2) / 2.0) * rng.standard_normal()
+        x[k + 1] = u[k] + (x[k] - u[k]) * decay + kick
+    measured = x + 0.005 * rng.standard_normal(len(x))
+    return spec, scenes.trace(scenes.series("x", times, measured), scenes.series("u", times, u))
+
+
+def test_unrest_beyond_the_tolerance_condemns_no_robot(scenes: ModuleType) -> None:
+    # Single runs scatter by 0.3 * sqrt((1 - exp(-2)) / 2) = 0.197, twice the tolerance.
+    reports = [verify(*restless(scenes, seed, 60.0, 0.3)) for seed in range(SEEDS)]
+
+    assert all(report.verdict is Verdict.INCONCLUSIVE for report in reports)
+    scatters = [report.variables[0].scatter for report in reports]
+    assert np.mean(scatters) == pytest.approx(0.197, rel=0.1)
+    assert "nothing foretells by how much" in reports[0].reasons[0]
+    assert "fidelity: {scatter: {x:" in reports[0].advice[0]
+
+
+def test_a_spec_that_allows_the_scatter_passes_the_restless_robot(scenes: ModuleType) -> None:
+    spec, drive = restless(scenes, 1, 600.0, 0.3)
+    allowing = replace(spec, fidelity=replace(spec.fidelity, scatter={"x": 0.25}))
+
+    report = verify(allowing, drive)
+
+    assert report.verdict is Verdict.PASS
+    assert "beside the scatter of 0.25 that the spec allows" in report.reasons[0]
+
+
+def test_unrest_does_not_hide_a_wrong_gain(scenes: ModuleType) -> None:
+    spec, drive = restless(scenes, 2, 600.0, 0.1)
+    formula = (scenes.Code("0.6 u x sub mul"),)
+    wrong = replace(spec, field=replace(spec.field, formula=formula))
+
+    report = verify(wrong, drive)
+
+    assert report.verdict is Verdict.FAIL
+    assert "comes back wherever the robot is in the same situation" in report.reasons[0]
+
+
+def test_noise_that_the_spec_declares_is_not_estimated(scenes: ModuleType) -> None:
+    spec = scenes.van_der_pol()
+    sure = replace(spec.bindings[0], noise=0.02, origin="scene.yaml:7:3")
+
+    drive = scenes.van_der_pol_drive(1, 60.0, 0.01)
+    noise = of(verify(replace(spec, bindings=(sure, *spec.bindings[1:])), drive), "x").noise
+
+    assert noise.sigma == 0.02
+    assert noise.method == "declared at scene.yaml:7:3"

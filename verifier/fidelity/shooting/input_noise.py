@@ -9,7 +9,7 @@ import numpy as np
 
 from runtime.arrays import Array
 from verifier.fidelity.shooting.grid import moved_inputs
-from verifier.fidelity.shooting.noise import plain_noise
+from verifier.fidelity.shooting.noise import as_declared, plain_noise
 from verifier.fidelity.shooting.plan import Plan
 from verifier.fidelity.shooting.prediction import Model, chunks, predict
 from verifier.fidelity.shooting.samples import Samples
@@ -23,7 +23,11 @@ COPIES = 12
 def with_input_noise(plan: Plan, shots: Shots, rng: np.random.Generator) -> Shots:
     """The shots, their variances raised by the noise of the sensed-only inputs."""
     series = [each.series for each in plan.needs.inputs if each.is_noisy and each.series]
-    sigma = {s.name: plain_noise(s.times, s.values, 0.0).sigma for s in series}
+    declared = {each.name: each for each in plan.model.flow.program.bindings}
+    sigma = {
+        s.name: as_declared(plain_noise(s.times, s.values, 0.0), declared.get(s.name)).sigma
+        for s in series
+    }
     if not any(sigma.values()):
         return shots
     calm = _averages(plan, plan.model, shots.start)

@@ -21,10 +21,12 @@ from a departure is rather too little than too much: the verdict gets stricter, 
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from runtime.arrays import Array, Booleans
+from runtime.program import Binding
 from verifier.fidelity.shooting.prediction import Model, predict
 from verifier.fidelity.shooting.samples import Samples, measured_states, turned
 from verifier.fidelity.stretches.spans import contains
@@ -45,7 +47,18 @@ LONGEST = 3.0
 
 def noise_of(model: Model, samples: tuple[Samples, ...], spans: Array) -> tuple[Noise, ...]:
     """The noise of every predicted state inside the judged `spans`."""
-    return tuple(_predicted_noise(model, samples, j, spans) for j in range(len(samples)))
+    declared = {each.name: each for each in model.flow.program.bindings}
+    return tuple(
+        as_declared(_predicted_noise(model, samples, j, spans), declared.get(each.state.name))
+        for j, each in enumerate(samples)
+    )
+
+
+def as_declared(noise: Noise, binding: Binding | None) -> Noise:
+    """The noise, or what the spec says of the sensor."""
+    if binding is None or binding.noise is None:
+        return noise
+    return replace(noise, sigma=binding.noise, method=f"declared at {binding.origin}")
 
 
 def plain_noise(times: Array, values: Array, turn: float) -> Noise:
