@@ -14,6 +14,7 @@ from runtime.flow import Flow, registers
 from runtime.machine import evaluate
 from runtime.program import Guard, Program
 from verifier.fidelity.shooting.grid import Grid
+from verifier.fidelity.stretches.segments import on_circle
 
 
 def switch_knots(flow: Flow, grid: Grid) -> Integers:
@@ -43,26 +44,35 @@ def jumped(flow: Flow, grid: Grid, states: Array, knots: Integers) -> Array:
         here = (left == way[0]) & (entered == way[1])
         guards = [g for g in flow.program.field.guards if (g.mode, g.target) == way]
         if guards:
-            register = register_before(flow, grid, states[here], knots[here])
-            after[here] = reset_by(flow.program, guards, register)
+            inputs = grid.inputs[knots[here] - 1]
+            register = register_under(flow, states[here], inputs, grid.columns)
+            after[here] = reset_by(flow.program, guards, register, states[here])
     return after
 
 
-def register_before(flow: Flow, grid: Grid, states: Array, knots: Integers) -> Array:
-    """The register (K, r) in which guards are read at `knots`: inputs as held until there."""
+def register_under(flow: Flow, states: Array, inputs: Array, columns: Integers) -> Array:
+    """The register (..., r) in which guards are read: angles within their domain.
+
+    states (..., n); inputs (..., k) of the register's `columns` (k,).
+    """
     program = flow.program
     defaults = flow.defaults[len(program.states) : len(program.states) + len(program.controls)]
     register = registers(flow, states, defaults)
-    register[..., grid.columns] = grid.inputs[np.maximum(knots - 1, 0)]
+    register[..., columns] = inputs
+    for index, state in enumerate(program.states):
+        register[..., index] = on_circle(state, register[..., index])
     return register
 
 
-def reset_by(program: Program, guards: list[Guard], register: Array) -> Array:
-    """The states (K, n) after the jump of one of `guards`, from the register (K, r) before it."""
+def reset_by(program: Program, guards: list[Guard], register: Array, states: Array) -> Array:
+    """The states (K, n) after the jump of one of `guards`, from those before it.
+
+    register (K, r): before it, too, with angles within their domain.
+    """
     values = evaluate([guard.condition for guard in guards], program.register, register)
     chosen = np.argmax(values, axis=-1)
     names = [state.name for state in program.states]
-    after = np.array(register[..., : len(names)])
+    after = np.array(states)
     for index, guard in enumerate(guards):
         here = chosen == index
         if guard.resets and np.any(here):

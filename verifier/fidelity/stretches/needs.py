@@ -99,6 +99,13 @@ def names_read(program: Program) -> set[str]:
     return axes | _tokens((*(field.formula or ()), *coefficients, *coordinates))
 
 
+def names_guarded(program: Program) -> set[str]:
+    """The names that guards and their resets depend on."""
+    guards = program.field.guards
+    resets = (code for guard in guards for _, code in guard.resets)
+    return _tokens((*(guard.condition for guard in guards), *resets))
+
+
 def mode_of(program: Program, needs: Needs) -> Input | None:
     """The input that tells the mode; None where there are no modes."""
     return next((each for each in needs.inputs if each.name == program.field.mode), None)
@@ -132,7 +139,7 @@ def _inputs(program: Program, trace: Trace, predicted: set[int]) -> tuple[Input,
     ]
     offset = len(program.states)
     parts += [(offset + i, control) for i, control in enumerate(program.controls)]
-    read = names_read(program) | _tokens(_condition(program))
+    read = names_read(program) | names_guarded(program) | _tokens(_condition(program))
     found = (_input(trace, part.name, column, part) for column, part in parts if part.name in read)
     return tuple(_with_changes_halved(each, program.field.mode) for each in found)
 
