@@ -115,8 +115,7 @@ def _divided(
 
 
 def _spread(values: Array) -> float:
-    """How far apart the middle four fifths of the values lie."""
-    return float(np.ptp(np.quantile(values, (0.1, 0.9)))) if len(values) else 0.0
+    return float(np.std(values)) if len(values) else 0.0
 
 
 def _count(members: Booleans, clusters: Integers) -> int:

@@ -68,27 +68,26 @@ def _foretold(errors: Array, situation: Array, place: Integers) -> Array:
         width = reach**2 * max(situation.shape[1], 1)
         # A constant, a slope and a bump: constants and gains are foretold from anywhere.
         kernel = 1.0 + situation @ situation.T + np.exp(-0.5 * distance / width)
-        values, vectors = np.linalg.eigh(kernel)
-        values = np.maximum(values, 0.0)
         for ridge in RIDGES:
-            hat = (vectors * (values / (values + ridge))) @ vectors.T
-            forecast = _without_own(errors, hat, place)
+            precision = np.linalg.inv(kernel + ridge * np.eye(len(errors)))
+            forecast = _without_own(errors, precision, place)
             missed = float(np.mean((errors - forecast) ** 2))
             if missed < least:
                 best, least = forecast, missed
     return best
 
 
-def _without_own(errors: Array, hat: Array, place: Integers) -> Array:
-    """What a linear smoother with this hat matrix (W, W) foretells of each cluster.
+def _without_own(errors: Array, precision: Array, place: Integers) -> Array:
+    """What the others foretell of each cluster, its neighbours in time left out, too.
 
-    The cluster and its neighbours in time are left out, in closed form.
+    precision (W, W): the inverse of the errors' covariance. A Gaussian's mean given all others is
+    e_A - P_AA^-1 (P e)_A for the left-out A (Rasmussen and Williams 2006, section 5.4.2).
     """
-    residual = errors - hat @ errors
+    pulled = precision @ errors
     forecast = np.empty(len(errors))
     for cluster in range(int(place.max()) + 1):
         near = np.flatnonzero(np.abs(place - cluster) <= 1)
-        left = np.eye(len(near)) - hat[np.ix_(near, near)]
         own = place[near] == cluster
-        forecast[near[own]] = (errors[near] - np.linalg.solve(left, residual[near]))[own]
+        step = np.linalg.solve(precision[np.ix_(near, near)], pulled[near])
+        forecast[near[own]] = (errors[near] - step)[own]
     return forecast
