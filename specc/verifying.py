@@ -52,11 +52,36 @@ def verify(
     Raises:
         SpecError: the spec or the log can't be used.
     """
-    trace = Path(trace)
+    return verify_by(
+        Path(trace),
+        spec,
+        clock,
+        program_for_verify,
+        strict=strict,
+        only_verdict=only_verdict,
+        progress=progress,
+    )
+
+
+def verify_by(
+    trace: Path,
+    spec: Path | str | Program | None,
+    clock: Clock,
+    program_of: Callable[[Path], Program],
+    *,
+    strict: bool,
+    only_verdict: bool,
+    progress: Callable[[str], None] | None,
+) -> Verification:
+    """What `verify` does, with `program_of` to make a program of a spec's path.
+
+    Raises:
+        SpecError: the spec or the log can't be used.
+    """
     if isinstance(spec, Program):
         found = Found(spec, f"{spec.name}, as given")
     else:
-        found = find_spec(trace, None if spec is None else Path(spec), _without_running)
+        found = find_spec(trace, None if spec is None else Path(spec), program_of)
     tell = progress or _in_silence
     tell("reading")
     read = read_trace(trace, found.program, clock, strict=strict)
@@ -68,8 +93,12 @@ def _in_silence(_phase: str) -> None:
     """Nobody watches."""
 
 
-def _without_running(path: Path) -> Program:
-    """A program for `verify`, which runs nothing that a spec's author wrote."""
+def program_for_verify(path: Path) -> Program:
+    """A program for `verify`, which runs nothing that a spec's author wrote.
+
+    Raises:
+        SpecError: the spec is wrong, or its field is code.
+    """
     if path.suffix != ".specc":
         loaded = load(path)
         if isinstance(loaded.spec, BehaviorSpec) and loaded.spec.field.module is not None:

@@ -12,7 +12,7 @@ from spec_schema.diagnostics import SpecError
 from specc.cli.check import check
 from specc.cli.compare import compare
 from specc.cli.compile import compile_
-from specc.cli.console import print_json, say, show_diagnostics
+from specc.cli.console import print_annotations, print_json, say, show_diagnostics
 from specc.cli.init import init
 from specc.cli.portrait import portrait
 from specc.cli.schema import schema
@@ -68,8 +68,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
     try:
         outcome = app(args=arguments, standalone_mode=False)
     except SpecError as error:
-        if _wants_json(sys.argv[1:] if arguments is None else arguments):
+        given = sys.argv[1:] if arguments is None else arguments
+        if _wants(given, "json"):
             print_json([diagnostic.as_json() for diagnostic in error.diagnostics])
+        elif _wants(given, "github"):
+            print_annotations(error.diagnostics)
         else:
             show_diagnostics(error.diagnostics)
         return Status.BAD_INPUT
@@ -92,10 +95,10 @@ def _usage(error: TyperException) -> str:
     return f"{option}: {words}" if option.startswith("-") and option not in words else words
 
 
-def _wants_json(arguments: Sequence[str]) -> bool:
+def _wants(arguments: Sequence[str], form: str) -> bool:
     """Whether the command prints for programs: then they get its diagnostics, too."""
     pairs = zip(arguments, [*arguments[1:], ""], strict=True)
     return any(
-        one in {"--format=json", "-fjson"} or (one in {"--format", "-f"} and value == "json")
+        one in {f"--format={form}", f"-f{form}"} or (one in {"--format", "-f"} and value == form)
         for one, value in pairs
     )

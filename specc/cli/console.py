@@ -35,6 +35,15 @@ def print_json(value: object) -> None:
     sys.stdout.write(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
 
 
+def print_annotations(diagnostics: Iterable[Diagnostic]) -> None:
+    """Diagnostics as GitHub shows them beside the code, on standard output."""
+    from verifier.report.annotations import annotation
+
+    for each in in_file_order(diagnostics):
+        message = "\n".join(part for part in (each.message, each.help) if part)
+        sys.stdout.write(annotation(str(each.severity), each.place, each.code, message) + "\n")
+
+
 def print_text(text: str) -> None:
     """A result for people."""
     results().print(Text(text))

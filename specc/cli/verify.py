@@ -1,15 +1,18 @@
 """`specc verify`: does the robot do what the spec says?"""
 
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, final
+from typing import TYPE_CHECKING, Annotated, final
 
 import typer
 
-from specc.cli.console import print_json, print_text, say
-from specc.cli.options import Format, FormatOption
+from specc.cli.console import print_json, print_text, say, shown_bar
 from specc.cli.status import Status
 from specc.cli.warming import warmed
+
+if TYPE_CHECKING:
+    from specc.runs import Outcome
 
 
 @final
@@ -21,9 +24,19 @@ class Clock(StrEnum):
     LOG = "log"
 
 
+@final
+class ReportFormat(StrEnum):
+    """How a verdict is printed on standard output."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
 def verify(
-    trace: Annotated[
-        Path, typer.Argument(help="A log: .mcap, ROS 1 .bag, ROS 2 bag, .csv.", metavar="TRACE")
+    traces: Annotated[
+        list[Path],
+        typer.Argument(help="Logs: .mcap, ROS 1 .bag, ROS 2 bag, .csv.", metavar="TRACE..."),
     ],
     spec: Annotated[
         Path | None,
@@ -36,7 +49,9 @@ def verify(
     output: Annotated[
         list[Path],
         typer.Option(
-            "--output", "-o", help="Also write a report: .html, .json or .txt. Repeatable."
+            "--output",
+            "-o",
+            help="Also write a report: .html, .json, .txt, .xml (JUnit) or .sarif. Repeatable.",
         ),
     ] = [],  # noqa: B006  typer copies it
     clock: Annotated[
@@ -45,9 +60,21 @@ def verify(
     strict: Annotated[
         bool, typer.Option("--strict", help="Any loss in the log (torn, corrupt) is an error.")
     ] = False,
-    form: FormatOption = Format.TEXT,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="The verdict only, without what explains it.")
+    ] = False,
+    form: Annotated[
+        ReportFormat,
+        typer.Option(
+            "--format",
+            "-f",
+            help="Print for people (text), for programs (json), or as annotations (github).",
+        ),
+    ] = ReportFormat.TEXT,
 ) -> int:
-    """Judge a recording of a robot against its spec: PASS, FAIL or INCONCLUSIVE, and why.
+    """Judge recordings of a robot against its spec: PASS, FAIL or INCONCLUSIVE, and why.
+
+    With several recordings it prints a table, and ends like the worst of them.
 
     **Examples**
 
@@ -55,28 +82,81 @@ def verify(
 
     `specc verify drive.bag --spec specs/husky_drive.yaml -o report.html`
 
+    `specc verify runs/*.mcap --quick -o report.html -o report.junit.xml -o report.sarif`
+
     `specc verify drive.mcap --format json > verdict.json`
     """
-    from specc import verifying
     from specc.files import require_suffix
-    from verifier.report.record import as_json
-    from verifier.report.text import as_text
+    from specc.reported import KINDS
+    from specc.runs import Unusable, verify_each
 
     for path in output:
-        require_suffix(path, ".html", ".json", ".txt")
+        require_suffix(path, *KINDS)
     warmed(spec)
-    verification = verifying.verify(trace, spec, clock.value, strict=strict)
-    report = verification.report
-    if form is Format.JSON:
-        print_json({**as_json(report), "found_by": verification.found.how})
-    else:
-        say(f"spec: {verification.found.how}")
-        print_text(as_text(report))
-    if output:
-        from specc.reported import write_report
+    outcomes: list[Outcome] = []
+    is_interrupted = False
+    with shown_bar("verify") as bar:
 
-        for path in output:
-            write_report(verification, path)
-            say(f"wrote {path}", "bold")
+        def tell(source: str, phase: str) -> None:
+            bar.advance(f"{source}, {phase}", len(outcomes), len(traces))
+
+        each = verify_each(
+            traces, spec, clock.value, strict=strict, only_verdict=quick, progress=tell
+        )
+        try:
+            outcomes.extend(each)
+        except KeyboardInterrupt:
+            is_interrupted = True
+    if len(traces) == 1 and outcomes and isinstance(outcomes[0], Unusable):
+        raise outcomes[0].error
+    if is_interrupted and not outcomes:
+        raise KeyboardInterrupt
+    _print(outcomes, form, is_one=len(traces) == 1)
+    _write(outcomes, output, is_one=len(traces) == 1)
+    if is_interrupted:
+        say(f"interrupted: {len(outcomes)} of {len(traces)} recordings were judged", "bold red")
+        return Status.INTERRUPTED
+    return _status(outcomes)
+
+
+def _print(outcomes: Sequence["Outcome"], form: ReportFormat, *, is_one: bool) -> None:
+    from specc.reported import findings_in, source_of
+    from specc.runs import verifications
+    from specc.runs_record import run_record, runs_record
+    from specc.runs_text import runs_table
+    from verifier.report.annotations import as_annotations
+    from verifier.report.examination_text import examination_text
+
+    found = verifications(outcomes)
+    match form:
+        case ReportFormat.JSON:
+            print_json(run_record(found[0]) if is_one else runs_record(outcomes))
+        case ReportFormat.GITHUB:
+            lines = [as_annotations(findings_in(each), source_of(each)) for each in outcomes]
+            print_text("\n".join(line for line in lines if line))
+        case ReportFormat.TEXT:
+            for how in dict.fromkeys(each.found.how for each in found):
+                say(f"spec: {how}")
+            print_text(examination_text(found[0].examination) if is_one else runs_table(outcomes))
+
+
+def _write(outcomes: Sequence["Outcome"], output: Sequence[Path], *, is_one: bool) -> None:
+    from specc.reported import write_report, write_reports
+    from specc.runs import verifications
+
+    for path in output:
+        if is_one:
+            write_report(verifications(outcomes)[0], path)
+        else:
+            write_reports(outcomes, path)
+        say(f"wrote {path}", "bold")
+
+
+def _status(outcomes: Sequence["Outcome"]) -> int:
+    """2 where a recording can't be used, else that of the worst verdict."""
+    from specc.runs import unusable, together
+
+    if unusable(outcomes):
+        return Status.BAD_INPUT
     verdicts = {"pass": Status.YES, "fail": Status.NO, "inconclusive": Status.INCONCLUSIVE}
-    return verdicts[str(report.verdict)]
+    return verdicts[str(together(outcomes))]

@@ -14,7 +14,7 @@ def draw_candidates(diagnosis: Diagnosis) -> Figure:
     """A bar per candidate, best first: full where the diagnosis names it, pale elsewhere."""
     shown = diagnosis.candidates[:MOST]
     with look():
-        figure = Figure(figsize=(7.2, 0.75 + 0.27 * len(shown)))
+        figure = Figure(figsize=(7.2, 0.6 + 0.27 * len(shown)))
         left = 0.3 + min(3.0, 0.075 * max(len(each.label) for each in shown))
         axes = figure.add_subplot(framed(figure, 1, 1, (left, 0.45, 0.5, 0.1))[0])
         bare(axes)

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from specc.figures.quantities import quantity
 from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, framed, look
@@ -21,7 +22,7 @@ def draw_caught(limits: Limits) -> Figure:
     """A row per fault; its sizes as shares of the largest that was tried, on a log scale."""
     rows = [each for each in limits.caught if each.trials]
     with look():
-        figure = Figure(figsize=(7.2, 1.0 + 0.34 * max(1, len(rows))))
+        figure = Figure(figsize=(7.2, 1.05 + 0.34 * max(1, len(rows))))
         labels = [f"{each.fault} of {each.variable}" for each in rows]
         left = 0.3 + min(2.6, 0.078 * max((len(label) for label in labels), default=0))
         axes = figure.add_subplot(framed(figure, 1, 1, (left, 1.25, 0.5, 0.4))[0])
@@ -29,6 +30,9 @@ def draw_caught(limits: Limits) -> Figure:
         axes.spines["left"].set_visible(False)
         axes.tick_params(axis="y", length=0)
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
         for row, each in enumerate(rows):
             _row(axes, row, each)
         axes.set_yticks(range(len(rows)), labels)
