@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from runtime.program import Program
 from verifier.fidelity.stretches.needs import parts_of
+from verifier.fidelity.switching.judge import switching_in
 from verifier.fidelity.verify import judged
 from verifier.report.examination import Examination
 from verifier.scores.scores import scores_of
@@ -34,10 +35,14 @@ def examine(
     tell("judging")
     report, study = judged(program, trace)
     origins = origins_of(program)
-    if only_verdict or study is None:
+    if only_verdict:
         return Examination(report, origins=origins)
+    switching = switching_in(program, trace)
+    if study is None:
+        return Examination(report, switching=switching, origins=origins)
     tell("scoring")
-    return Examination(report, scores=scores_of(study, report), origins=origins)
+    scores = scores_of(study, report)
+    return Examination(report, switching=switching, scores=scores, origins=origins)
 
 
 def origins_of(program: Program) -> dict[str, str]:

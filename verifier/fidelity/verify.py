@@ -21,9 +21,11 @@ from verifier.fidelity.judging.judgement import places_of, results_of
 from verifier.fidelity.judging.regions import axes_of, coverage_of
 from verifier.fidelity.judging.verdict import decide, not_told, notes_of, too_short
 from verifier.fidelity.shooting.study import Study, study_of
-from verifier.fidelity.stretches.needs import held, needs_of, parts_of
+from verifier.fidelity.stretches.needs import Needs, held, needs_of, parts_of
 from verifier.fidelity.stretches.segments import Segments, on_circle, segments_of
 from verifier.fidelity.stretches.spans import contains, length, merge
+from verifier.fidelity.switching.judge import switching_of
+from verifier.fidelity.switching.verdict import with_switching, with_told_times
 from verifier.report.report import (
     CellAxis,
     Coverage,
@@ -61,6 +63,17 @@ def judged(program: Program, trace: Trace) -> tuple[Report, Study | None]:
     absent = not_told(needs)
     if absent:
         return _unjudged(program, trace, fidelity, None, absent), None
+    switching = switching_of(program, needs, fidelity)
+    if switching is None:
+        return _compared(program, trace, fidelity, needs)
+    told = with_told_times(program, needs, switching)
+    report, study = _compared(program, trace, fidelity, told)
+    return with_switching(report, switching, needs), study
+
+
+def _compared(
+    program: Program, trace: Trace, fidelity: Fidelity, needs: Needs
+) -> tuple[Report, Study | None]:
     segments = segments_of(program, needs, fidelity.horizon)
     if len(segments.spans) == 0:
         reason = too_short(needs, segments, fidelity.horizon)

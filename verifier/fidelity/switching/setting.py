@@ -24,9 +24,9 @@ from verifier.fidelity.stretches.spans import without
 
 STEPS = 60
 """At least so many integration steps to the horizon: crossings are read off them."""
-LEAD = 0.2
+LEAD = 0.1
 """A state beside a switch is fitted to the samples of at most this share of a horizon."""
-FEWEST = 5
+FEWEST = 8
 """But to so many samples of the time base, where the stay is long enough."""
 
 
