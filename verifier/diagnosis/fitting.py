@@ -52,15 +52,21 @@ def plain_fit(scene: Scene) -> Fit:
 def extended(scene: Scene, base: Fit, effect: Effect) -> Fit:
     """The base with one more effect, all numbers fitted together."""
     effects = (*base.effects, effect)
-    begins = [effect.neutral, *effect.starts]
-    settings = [setting_of(scene, effects, (*base.values, *each)) for each in begins]
-    if len(begins) > 1:
-        count = len(begins)
-        tried = left_over(scene, settings, [base.starts] * count, [base.sigma] * count)
+    begins = (effect.neutral, *effect.starts)
+    best = 0
+    if effect.starts:
+        tried = left_of_starts(scene, base, effect)
         best = int(np.argmin([objective(scene, each) for each in tried]))
-    else:
-        best = 0
     return fit(scene, effects, (*base.values, *begins[best]), base.starts, base.sigma)
+
+
+def left_of_starts(scene: Scene, base: Fit, effect: Effect) -> Array:
+    """What is left (1 + starts, W, R) with the effect at its neutral values, then at its starts."""
+    effects = (*base.effects, effect)
+    begins = (effect.neutral, *effect.starts)
+    settings = [setting_of(scene, effects, (*base.values, *each)) for each in begins]
+    count = len(begins)
+    return left_over(scene, settings, [base.starts] * count, [base.sigma] * count)
 
 
 def fit(

@@ -50,7 +50,7 @@ def scored(scene: Scene, fitted: Fit) -> Scored:
         values = fitted.values
         if values:
             right = np.einsum("wri,wr->i", slopes[train], residual[train])
-            step = solved(information(slopes[train]), right, 0.0)
+            step = solved(information(slopes[train]), right, 0.0) * _is_free(fitted)
             values = within(fitted.effects, np.array(values) + step)
         settings.append(setting_of(scene, fitted.effects, values))
         starts.append(steered(scene, fitted, values))
@@ -75,6 +75,14 @@ def halves_of(scene: Scene) -> list[Booleans]:
 def numbers_of(effects: tuple[Effect, ...]) -> int:
     """How many numbers they take."""
     return sum(len(effect.numbers) for effect in effects)
+
+
+def _is_free(fitted: Fit) -> Booleans:
+    """Which numbers (p,) are not at an end of their range, where a slope says little."""
+    numbers = [number for effect in fitted.effects for number in effect.numbers]
+    ends = np.array([(number.low, number.high) for number in numbers]).reshape(-1, 2)
+    values = np.array(fitted.values)
+    return np.asarray((values > ends[:, 0]) & (values < ends[:, 1]))
 
 
 def _empty(scene: Scene) -> Array:

@@ -15,6 +15,10 @@ from verifier.report.diagnosis import CandidateKind, ParameterKind
 NUDGE: Final = 1e-4
 """The difference for sensitivities, as a share of the number's size."""
 
+SLIPPING: Final = (ParameterKind.INPUT_GAIN, ParameterKind.RATE_GAIN)
+SLIPS: Final = tuple((each,) for each in (-1.0, np.pi / 180.0, 180.0 / np.pi, 1e-3, 1e3))
+"""Gains where a fit begins, too: a wrong sign, degrees and radians, millimetres and metres."""
+
 
 @final
 @dataclass(frozen=True, slots=True)
@@ -91,6 +95,7 @@ def effect_of(parameter: Parameter) -> Effect:
         numbers=(number,),
         apply=_Move(parameter),
         origin=parameter.origin,
+        starts=SLIPS if parameter.kind in SLIPPING else (),
         parameter=parameter.kind,
     )
 

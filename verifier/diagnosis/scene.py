@@ -15,7 +15,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.flow import Flow
-from runtime.program import Program
+from runtime.program import Kind, Program
 from verifier.diagnosis.altered import Altered, Seen
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.loosened import loosened_flow
@@ -23,6 +23,7 @@ from verifier.fidelity.shooting.plan import Plan
 from verifier.fidelity.shooting.samples import Samples, edges, measured_states
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import Needs
+from verifier.fidelity.stretches.spans import spans_of
 
 LONG: Final = 2.0
 """Windows of so many horizons are wanted."""
@@ -33,6 +34,8 @@ MOST: Final = 64
 """More windows are thinned out, in even spacing."""
 MOST_SAMPLES: Final = 80
 """More samples of a state in a window are thinned out."""
+FEWEST: Final = 4
+"""With fewer samples of a state a window tells nothing."""
 STEPS: Final = 20
 """Integration steps to a horizon, at least."""
 
@@ -85,11 +88,12 @@ class Scene:
 def scene_of(program: Program, study: Study) -> Scene:
     """The windows of a study, for its program loosened."""
     plan, horizon = study.plan, study.plan.windows.horizon
-    edges_of_windows = _windows(study.segments.spans, horizon)
-    step = _step(plan)
-    rows = [_chosen(plan, low, high) for low, high in edges_of_windows]
-    rows = [row for row in rows if all(len(each) > 1 for each in row)]
-    knots = [_knots(plan, row, step, is_map=program.field.is_map) for row in rows]
+    changes = _changes(program, plan.needs)
+    jumps = any(guard.resets for guard in program.field.guards)
+    spans = _cut(study.segments.spans, changes) if jumps else study.segments.spans
+    rows = [_chosen(plan, low, high) for low, high in _windows(spans, horizon)]
+    rows = [row for row in rows if all(len(each) >= FEWEST for each in row)]
+    knots = [_knots(plan, row, _step(plan), changes) for row in rows]
     times = _padded(knots)
     observed = tuple(
         _observed(each, [row[j] for row in rows], times, study.noise[j].sigma)
@@ -137,13 +141,32 @@ def _chosen(plan: Plan, low: float, high: float) -> list[Integers]:
     return chosen
 
 
-def _knots(plan: Plan, row: list[Integers], step: float, *, is_map: bool) -> Array:
-    """Integration knots of one window: its samples, no further apart than `step`."""
+def _changes(program: Program, needs: Needs) -> Array:
+    """When the discrete inputs change."""
+    discrete = {state.name for state in program.states if state.kind is Kind.DISCRETE}
+    told = [i.series for i in needs.inputs if i.name in discrete and i.series is not None]
+    found = [each.times[1:][np.diff(each.values) != 0.0] for each in told]
+    return np.unique(np.concatenate([np.empty(0), *found]))
+
+
+def _cut(spans: Array, changes: Array) -> Array:
+    """Spans that end where states may jump."""
+    pieces = []
+    for low, high in spans:
+        inner = changes[(changes > low) & (changes < high)]
+        pieces += list(pairwise([low, *inner, high]))
+    return spans_of([(float(a), float(b)) for a, b in pieces])
+
+
+def _knots(plan: Plan, row: list[Integers], step: float, changes: Array) -> Array:
+    """Integration knots of one window: samples and changes, no further apart than `step`."""
     pairs = list(zip(plan.samples, row, strict=True))
-    if is_map:
+    if plan.model.flow.is_map:
         knots = np.concatenate([each.knots[index] for each, index in pairs])
         return np.asarray(plan.model.grid.times[int(np.min(knots)) : int(np.max(knots)) + 1])
     times = np.unique(np.concatenate([each.times[index] for each, index in pairs]))
+    inner = changes[(changes > times[0]) & (changes < times[-1])]
+    times = np.union1d(times, inner)
     pieces = np.maximum(1, np.ceil(np.diff(times) / step - 1e-9)).astype(np.int64)
     parts = [
         np.linspace(a, b, n, endpoint=False)

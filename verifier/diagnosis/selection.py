@@ -4,18 +4,21 @@ A candidate is taken where it predicts held-out windows better than what was tak
 more than chance would, and by enough to matter beside the tolerance.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
 
 from runtime.arrays import Array
-from verifier.diagnosis.altered import Effect
+from verifier.diagnosis.altered import Effect, Number
 from verifier.diagnosis.fitting import (
+    ENOUGH,
     Fit,
     correlation_time,
     extended,
     fit,
+    left_of_starts,
+    objective,
     plain_fit,
     white_slopes,
 )
@@ -24,7 +27,7 @@ from verifier.diagnosis.profiled import profiled
 from verifier.diagnosis.residuals import owners
 from verifier.diagnosis.scene import Scene
 
-MOST: Final = 3
+MOST: Final = 5
 """So many are taken, at most."""
 CLEAR: Final = 6.0
 """A candidate gains at least so much held-out log-likelihood: many are tried."""
@@ -78,9 +81,10 @@ class Selection:
     steps: tuple[Step, ...]
 
     @property
-    def taken(self) -> tuple[Tried, ...]:
-        """What was taken in, in order."""
-        return tuple(step.tried[0] for step in self.steps if step.is_taken)
+    def taken(self) -> tuple[Step, ...]:
+        """The rounds whose best was taken in and not dropped again."""
+        kept = {effect.label for effect in self.final.effects}
+        return tuple(s for s in self.steps if s.is_taken and s.tried[0].effect.label in kept)
 
 
 def select(scene: Scene, effects: tuple[Effect, ...], tolerance: dict[str, float]) -> Selection:
@@ -92,8 +96,29 @@ def select(scene: Scene, effects: tuple[Effect, ...], tolerance: dict[str, float
         steps.append(step)
         if not step.is_taken:
             break
-        base = step.tried[0].fitted
+        base = _pruned(scene, step.tried[0].fitted, tolerance)
     return Selection(plain, base, tuple(steps))
+
+
+def _pruned(scene: Scene, base: Fit, tolerance: dict[str, float]) -> Fit:
+    """Without those that the others have made superfluous."""
+    for place in range(len(base.effects) - 1):
+        fewer = _without(scene, base, place)
+        both = scored(scene, base), scored(scene, fewer)
+        thinning = correlation_time(scene, base.left.residual)
+        lost = float(np.sum((both[0].likelihood - both[1].likelihood) / thinning))
+        is_clear = lost - len(base.effects[place].numbers) >= CLOSE
+        if not (is_clear and _matters(scene, both[1], both[0], tolerance)):
+            return _pruned(scene, fewer, tolerance)
+    return base
+
+
+def _without(scene: Scene, base: Fit, place: int) -> Fit:
+    first = sum(len(each.numbers) for each in base.effects[:place])
+    last = first + len(base.effects[place].numbers)
+    effects = base.effects[:place] + base.effects[place + 1 :]
+    values = base.values[:first] + base.values[last:]
+    return fit(scene, effects, values, base.starts, base.sigma)
 
 
 def _left(effects: tuple[Effect, ...], base: Fit) -> tuple[Effect, ...]:
@@ -115,7 +140,7 @@ def _step(
     for effect in _promising(scene, base, effects):
         fitted = extended(scene, base, effect)
         held_out = scored(scene, fitted)
-        own = _own_reference(scene, base, effect) if effect.stands_in else reference
+        own = _better(reference, _still(scene, base, effect)) if effect.stands_in else reference
         fits.append((effect, fitted, held_out, own))
     if not fits:
         return Step((), (), (), is_taken=False)
@@ -125,38 +150,52 @@ def _step(
     return _ranked(scene, tried, base)
 
 
-def _own_reference(scene: Scene, base: Fit, effect: Effect) -> Scored:
+def _still(scene: Scene, base: Fit, effect: Effect) -> Scored:
     """The effect at its neutral values: measured states in place of predicted ones, no more."""
-    still = _still(effect)
-    values = base.values
-    return scored(scene, fit(scene, (*base.effects, still), values, base.starts, base.sigma))
+    neutral, apply = effect.neutral, effect.apply
+    still = replace(effect, numbers=(), apply=lambda setting, _values: apply(setting, neutral))
+    effects = (*base.effects, still)
+    return scored(scene, fit(scene, effects, base.values, base.starts, base.sigma))
 
 
-def _still(effect: Effect) -> Effect:
-    neutral = effect.neutral
-    return Effect(
-        effect.kind,
-        effect.applies_to,
-        effect.label,
-        (),
-        lambda setting, _values: effect.apply(setting, neutral),
-        effect.origin,
-    )
+def _better(one: Scored, other: Scored) -> Scored:
+    return one if np.sum(one.likelihood) >= np.sum(other.likelihood) else other
 
 
 def _promising(scene: Scene, base: Fit, effects: tuple[Effect, ...]) -> list[Effect]:
     """Without those of which a linear forecast promises nothing; curved ones stay."""
-    smooth = tuple(each for each in effects if not each.starts and len(each.numbers) == 1)
-    values = (*base.values, *(value for each in smooth for value in each.neutral))
-    together = (*base.effects, *smooth)
-    left = profiled(scene, together, values, base.starts, base.sigma)
+    single = tuple(each for each in effects if len(each.numbers) == 1)
+    values = (*base.values, *(value for each in single for value in each.neutral))
+    left = profiled(scene, (*base.effects, *single), values, base.starts, base.sigma)
     white = left.residual / base.sigma[owners(scene)]
-    slopes = left.slopes / base.sigma[owners(scene)][:, None]
-    slopes = _freed(slopes, len(base.values))
+    slopes = _freed(left.slopes / base.sigma[owners(scene)][:, None], len(base.values))
     along = np.einsum("wri,wr->i", slopes, white)
-    size = np.maximum(np.einsum("wri,wri->i", slopes, slopes), 1e-300)
-    forecast = dict(zip((each.label for each in smooth), 0.5 * along**2 / size, strict=True))
+    size = np.einsum("wri,wri->i", slopes, slopes)
+    forecast = {
+        each.label: _forecast(each.numbers[0], float(a), float(b))
+        for each, a, b in zip(single, along, size, strict=True)
+    }
+    bent = [each for each in single if np.isinf(forecast[each.label])]
+    forecast |= {each.label: _best_start(scene, base, each) for each in bent}
     return [each for each in effects if forecast.get(each.label, np.inf) >= HINT]
+
+
+def _best_start(scene: Scene, base: Fit, effect: Effect) -> float:
+    """The log-likelihood that the best of its starts gains over doing nothing."""
+    if not effect.starts:
+        return 0.0
+    tried = left_of_starts(scene, base, effect)
+    return objective(scene, tried[0]) - min(objective(scene, each) for each in tried[1:])
+
+
+def _forecast(number: Number, along: float, size: float) -> float:
+    """The log-likelihood that moving the number promises; infinite where a slope says nothing."""
+    if size * (1e3 * number.step) ** 2 < ENOUGH:
+        return np.inf
+    out = (along < 0.0 and number.neutral <= number.low) or (
+        along > 0.0 and number.neutral >= number.high
+    )
+    return 0.0 if out else 0.5 * along**2 / size
 
 
 def _freed(slopes: Array, taken: int) -> Array:
@@ -184,16 +223,22 @@ def _tried(
     before, after = np.sum(reference.squares, axis=0), np.sum(held_out.squares, axis=0)
     beyond = np.maximum(before - floor, 0.0) / fitted.sigma**2
     explained = (before - after) / fitted.sigma**2
-    allowed = np.array([tolerance.get(each.name, np.inf) for each in scene.observed])
-    size = np.sqrt(np.maximum(before - after, 0.0) / counts)
     return Tried(
         effect=effect,
         fitted=fitted,
         held_out=held_out,
         gain=float(np.sum(gains)) - len(effect.numbers),
         share=min(float(np.sum(explained) / max(float(np.sum(beyond)), 1e-300)), 1.0),
-        matters=bool(np.any(size > MATTERS * allowed)),
+        matters=_matters(scene, reference, held_out, tolerance),
     )
+
+
+def _matters(scene: Scene, before: Scored, after: Scored, tolerance: dict[str, float]) -> bool:
+    """Whether what is explained of some variable is anything beside its tolerance."""
+    counts = np.array([int(np.sum(each.used)) for each in scene.observed])
+    allowed = np.array([tolerance.get(each.name, np.inf) for each in scene.observed])
+    explained = np.sum(before.squares - after.squares, axis=0)
+    return bool(np.any(np.sqrt(np.maximum(explained, 0.0) / counts) > MATTERS * allowed))
 
 
 def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:

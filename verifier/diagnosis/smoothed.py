@@ -8,8 +8,9 @@ from scipy.signal import savgol_filter
 
 from runtime.arrays import Array
 from runtime.code import Code
-from runtime.flow import rates
-from runtime.machine import evaluate
+from runtime.machine import evaluate, run_tape
+from verifier.diagnosis.altered import Altered
+from verifier.diagnosis.courses import means
 from verifier.diagnosis.scene import Scene
 from verifier.fidelity.stretches.needs import held
 from verifier.fidelity.stretches.segments import on_circle
@@ -53,10 +54,19 @@ def values_of(scene: Scene, along: Smoothed, code: Code) -> Array:
     return evaluate([code], scene.flow.program.register, along.register)[:, 0]
 
 
-def rates_of(scene: Scene, along: Smoothed) -> Array:
-    """The spec's rates along the trace (T, n); those outside its domain are those before it."""
-    n, p = len(scene.program.states), len(scene.program.controls)
-    found = rates(scene.flow, along.register[:, :n], along.register[:, n : n + p])
+def rates_of(scene: Scene, along: Smoothed, setting: Altered) -> Array:
+    """The rates along the trace (T, n) in this setting.
+
+    Where they are outside the domain they are as before it.
+    """
+    register = np.array(along.register)
+    names = scene.flow.program.register
+    for name, value in setting.register.items():
+        register[:, names.index(name)] = value
+    edges = np.append(along.times, 2.0 * along.times[-1] - along.times[-2])
+    for name, course in setting.courses.items():
+        register[:, names.index(name)] = means(course, edges - 0.5 * (edges[1] - edges[0]))
+    found = run_tape(scene.flow.tape, register)
     good = np.all(np.isfinite(found), axis=1)
     if not np.any(good):
         return np.zeros_like(found)
