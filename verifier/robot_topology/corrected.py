@@ -40,10 +40,8 @@ def corrected_rates(field: Corrected, x: Array, u: Array, coefficients: Array) -
     moved = spec_rates(field, x, u)
     weights, gains = _split(field, coefficients)
     phi = functions(field.basis, x[..., field.columns])
-    if weights.ndim == 2:
-        added = phi @ weights.T
-    else:
-        added = (weights @ phi[..., None])[..., 0]
+    one_for_all = weights.ndim == 2
+    added = phi @ weights.T if one_for_all else (weights @ phi[..., None])[..., 0]
     moved[..., field.columns] = moved[..., field.columns] * (1.0 + gains) + added
     return moved
 

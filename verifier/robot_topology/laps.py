@@ -8,6 +8,7 @@ the phase may be rough: its error is the same in each lap.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final, final
 
 import numpy as np
@@ -33,6 +34,8 @@ SLOWEST: Final = 3.0
 """A lap takes at most so many times as long as the spec's, and at least the inverse."""
 SETTLED: Final = 4.0
 """Deviations of a lap's size from that of the late ones, in their own deviations, at most."""
+CALM: Final = 5e-4
+"""Their deviations are taken to be at least this share of the size."""
 MANY: Final = 12
 """From so many laps on, the correlation of successive ones is believed."""
 
@@ -150,7 +153,7 @@ def _passage(stretch: Stretch, phase: Array, at: float, period: float) -> float:
 def _is_lap(stretch: Stretch, phase: Array, starts: Array, period: float) -> list[bool]:
     """Of each pair of successive starts, whether it bounds a lap without breaks."""
     good = []
-    for first, last in zip(starts[:-1], starts[1:], strict=True):
+    for first, last in pairwise(starts):
         inside = (stretch.times >= first) & (stretch.times <= last)
         steps = np.abs(np.diff(phase[inside]))
         calm = len(steps) > 0 and float(np.max(steps)) < JUMP
@@ -177,12 +180,12 @@ def _unsettled(stretch: Stretch, starts: Array) -> int:
     sizes = np.array(
         [
             np.std(stretch.values[(stretch.times >= a) & (stretch.times < b)], axis=0)
-            for a, b in zip(starts[:-1], starts[1:], strict=True)
+            for a, b in pairwise(starts)
         ]
     )
     late = sizes[count // 2 :]
     middle = np.median(late, axis=0)
-    spread = np.maximum(1.4826 * np.median(np.abs(late - middle), axis=0), 2e-3 * middle)
+    spread = np.maximum(1.4826 * np.median(np.abs(late - middle), axis=0), CALM * middle)
     far = np.any(np.abs(sizes - middle) > SETTLED * spread, axis=1)[: count // 2]
     return int(np.argmin(np.append(far, False)))
 

@@ -25,9 +25,10 @@ from verifier.robot_topology.refitted_points import (
     state_at,
 )
 from verifier.robot_topology.scene import Scene, shortest
+from verifier.robot_topology.swings import swing
 from verifier.topology.features import Cycle
 
-STEPS: Final = 200
+STEPS: Final = 100
 """In a period of the spec's cycle."""
 SETTLED: Final = 0.02
 """Of the first deviation, that is left when a lap is timed."""
@@ -64,7 +65,7 @@ def refitted_cycle(view: RefitView, cycle: Cycle) -> RefittedCycle | None:
     laps = [lap for lap in found if lap is not None]
     if found[0] is None or len(laps) < FEWEST * len(found):
         return None
-    swings = np.array([_swing(loop) for _, loop in laps])
+    swings = np.array([swing(loop) for _, loop in laps])
     periods = np.array([period for period, _ in laps])
 
     def estimates(which: int) -> tuple[Estimate, ...]:
@@ -131,9 +132,3 @@ def _last_lap(
     part = -side[back] / (side[back + 1] - side[back])
     passed = times[back] + part * (times[back + 1] - times[back])
     return float(passed[-1] - passed[-2]), path[back[-2] : back[-1] + 2]
-
-
-def _swing(loop: Array) -> Array:
-    """Lowest, highest, half their distance: (3, m)."""
-    low, high = loop.min(axis=0), loop.max(axis=0)
-    return np.stack([low, high, 0.5 * (high - low)])
