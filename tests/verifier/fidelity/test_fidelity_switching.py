@@ -1,0 +1,259 @@
+"""Changes of mode: their times, their jumps, and what they do to the verdict."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runtime.program import Fidelity, Program
+from specc.loading import load_program
+from tests.verifier.fidelity.switching_robots import Leave, Patrol, Robot, patrol_log, with_mode
+from verifier.fidelity.switching.judge import switching_in
+from verifier.fidelity.verify import verify
+from verifier.report.report import Report, Standing, VariableResult, Verdict
+from verifier.report.switching import Switching, SwitchSort, Way
+from verifier.traces.trace import Trace
+
+SPECS = Path(__file__).parents[3] / "specs"
+
+
+@pytest.fixture(scope="module")
+def patrol() -> Program:
+    return judged_by(load_program(SPECS / "patrol.yaml"), {"x": 0.05, "v": 0.05}, 2.0)
+
+
+def judged_by(program: Program, tolerance: dict[str, float], horizon: float) -> Program:
+    return replace(program, fidelity=Fidelity(tolerance, horizon, {}, 0.0, "spec.yaml:9:1"))
+
+
+def switching(program: Program, trace: Trace) -> Switching:
+    found = switching_in(program, trace)
+    assert found is not None
+    return found
+
+
+def way(found: Switching, source: str) -> Way:
+    return next(way for way in found.ways if way.source == source)
+
+
+def of(report: Report, name: str) -> VariableResult:
+    return next(result for result in report.variables if result.name == name)
+
+
+def test_a_faithful_patrol_passes_and_says_that_it_turns_in_time(patrol: Program) -> None:
+    report = verify(patrol, patrol_log(Patrol().robot(), 120.0, 1))
+
+    assert report.verdict is Verdict.PASS
+    assert any("goes from forward to back in time" in reason for reason in report.reasons)
+
+
+def test_a_guard_five_per_cent_off_is_an_error_of_time_and_not_of_state(patrol: Program) -> None:
+    drive = patrol_log(Patrol(x1=1.575).robot(), 120.0, 2)
+
+    report, found = verify(patrol, drive), switching(patrol, drive)
+
+    assert report.verdict is Verdict.FAIL
+    assert "the robot goes from forward to back 0.1" in report.reasons[0]
+    assert "s later than by the spec" in report.reasons[0]
+    assert {result.standing for result in report.variables} == {Standing.WITHIN}
+    timing = way(found, "forward").timing
+    assert timing is not None
+    # 0.075 m at 0.5 m/s; allowed are 0.05 m at 0.5 m/s.
+    assert timing.late == pytest.approx(0.15, abs=0.015)
+    assert timing.interval.low < 0.15 < timing.interval.high
+    assert timing.allowed == pytest.approx(0.1, rel=0.05)
+    assert way(found, "back").standing is Standing.WITHIN
+
+
+def test_a_switch_that_comes_early_is_told_as_such(patrol: Program) -> None:
+    drive = patrol_log(Patrol(x2=-1.35).robot(), 120.0, 3)
+
+    timing = way(switching(patrol, drive), "back").timing
+
+    assert timing is not None
+    assert timing.standing is Standing.EXCEEDED
+    assert timing.late == pytest.approx(-0.3, abs=0.02)
+
+
+def test_a_guard_one_per_cent_off_is_within_the_tolerance(patrol: Program) -> None:
+    report = verify(patrol, patrol_log(Patrol(x1=1.515).robot(), 120.0, 4))
+
+    assert report.verdict is Verdict.PASS
+
+
+def test_a_speed_ten_per_cent_off_is_an_error_of_state_and_not_of_time(patrol: Program) -> None:
+    drive = patrol_log(Patrol(v1=0.45).robot(), 160.0, 5)
+
+    report, found = verify(patrol, drive), switching(patrol, drive)
+
+    assert report.verdict is Verdict.FAIL
+    assert of(report, "x").standing is Standing.EXCEEDED
+    timing = way(found, "forward").timing
+    assert timing is not None
+    assert timing.standing is Standing.WITHIN
+    assert abs(timing.late) < 0.03
+
+
+def test_a_wrong_reset_is_named_with_its_size(patrol: Program) -> None:
+    drive = patrol_log(Patrol(kept=0.8).robot(), 160.0, 6)
+
+    report, found = verify(patrol, drive), switching(patrol, drive)
+
+    assert report.verdict is Verdict.FAIL
+    jump = next(jump for jump in way(found, "forward").jumps if jump.name == "v")
+    assert jump.is_reset
+    assert jump.standing is Standing.EXCEEDED
+    assert jump.error == pytest.approx(0.1, abs=0.02)
+    kept = next(jump for jump in way(found, "forward").jumps if jump.name == "x")
+    assert not kept.is_reset
+    assert kept.standing is Standing.WITHIN
+
+
+def test_windows_go_on_through_switches_where_stays_are_short(patrol: Program) -> None:
+    far = judged_by(patrol, {"x": 0.05, "v": 0.05}, 8.0)
+
+    faithful = verify(far, patrol_log(Patrol().robot(), 240.0, 7))
+    turning_late = verify(far, patrol_log(Patrol(x1=1.575).robot(), 240.0, 8))
+    slow = verify(far, patrol_log(Patrol(v1=0.45).robot(), 240.0, 9))
+
+    assert faithful.verdict is Verdict.PASS
+    assert of(faithful, "x").declared.windows > 50
+    assert turning_late.verdict is Verdict.FAIL
+    assert {result.standing for result in turning_late.variables} == {Standing.WITHIN}
+    # 0.05 m/s for up to 8 s.
+    assert of(slow, "x").standing is Standing.EXCEEDED
+
+
+@pytest.mark.parametrize("every", [1, 4, 10])
+def test_how_often_the_mode_is_logged_does_not_shift_a_switch(patrol: Program, every: int) -> None:
+    drive = patrol_log(Patrol().robot(), 240.0, 10)
+    mode = drive.series["going"]
+    drive = with_mode(drive, "going", mode.times[::every], mode.values[::every])
+
+    timing = way(switching(patrol, drive), "forward").timing
+
+    assert timing is not None
+    assert abs(timing.late) < 0.02
+    assert timing.resolution == pytest.approx(0.05 * every)
+    assert timing.standing is Standing.WITHIN
+
+
+def test_a_mode_that_is_logged_only_when_it_changes_has_the_stamp_of_the_change(
+    patrol: Program,
+) -> None:
+    drive = patrol_log(Patrol().robot(), 120.0, 11)
+    mode = drive.series["going"]
+    first = np.append(True, np.diff(mode.values) != 0.0)
+    # The very first sample of a mode comes half a period after the switch, on average.
+    drive = with_mode(drive, "going", mode.times[first] - 0.025, mode.values[first])
+
+    timing = way(switching(patrol, drive), "forward").timing
+
+    assert timing is not None
+    assert timing.resolution == 0.0
+    assert timing.late == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_switch_where_none_was_due_is_unexpected(patrol: Program) -> None:
+    plain = Patrol().robot()
+    # Every time but the first it turns back half way.
+    robot = Robot(
+        plain.rates | {"startled": lambda _, s: [s[1], 0.0]},
+        plain.leave
+        | {
+            "back": [Leave(lambda s: -1.5 - s[0], "startled", lambda s: [s[0], 0.5])],
+            "startled": [Leave(lambda s: s[0], "back", lambda s: [s[0], -0.5])],
+        },
+        {"startled": "forward"},
+    )
+
+    drive = patrol_log(robot, 60.0, 12)
+    report, found = verify(patrol, drive), switching(patrol, drive)
+
+    # It goes back at x = 0, three seconds before the end of the line.
+    assert way(found, "forward").unexpected >= 5
+    assert report.verdict is Verdict.FAIL
+    assert "where by the spec it was not due" in report.reasons[0]
+
+
+def test_a_guard_that_is_passed_without_a_switch_is_missed(patrol: Program) -> None:
+    plain = Patrol().robot()
+    # It turns at 1.9, comes back, and only at 1 it says that it goes back.
+    robot = Robot(
+        plain.rates | {"silent": lambda _, s: [s[1], 0.0]},
+        plain.leave
+        | {
+            "forward": [Leave(lambda s: s[0] - 1.9, "silent", lambda s: [s[0], -0.5])],
+            "silent": [Leave(lambda s: 1.0 - s[0], "back")],
+        },
+        {"silent": "forward"},
+    )
+
+    drive = patrol_log(robot, 60.0, 13)
+    report, found = verify(patrol, drive), switching(patrol, drive)
+
+    assert way(found, "forward").missed >= 3
+    missed = [each.time for each in found.switches if each.sort is SwitchSort.MISSED]
+    assert missed[0] == pytest.approx(3.0, abs=0.4)
+    assert report.verdict is Verdict.FAIL
+    assert any("although by the spec it had to" in reason for reason in report.reasons)
+
+
+def test_a_way_that_the_spec_does_not_have_is_named() -> None:
+    spec = judged_by(load_program(SPECS / "patrol_turning.yaml"), {"x": 0.05, "v": 0.1}, 1.0)
+    drive = patrol_log(Patrol(x1=1.2, x2=-1.2).robot(), 60.0, 14)
+    mode = drive.series["going"]
+    drive = with_mode(drive, "going", mode.times, np.where(mode.values == 1.0, 2.0, 0.0))
+    drive = replace(drive, constants={"x1": 1.2, "x2": -1.2, "v1": 0.5, "v2": 0.5, "a": 4.0})
+
+    report = verify(spec, drive)
+
+    assert report.verdict is Verdict.FAIL
+    assert "going went from forward to back" in report.reasons[0]
+    assert "the spec has no such way" in report.reasons[0]
+
+
+def test_a_mode_that_is_not_in_the_log_is_asked_for(patrol: Program) -> None:
+    drive = patrol_log(Patrol().robot(), 60.0, 15)
+    drive = replace(drive, series={n: s for n, s in drive.series.items() if n != "going"})
+
+    report = verify(patrol, drive)
+
+    assert report.verdict is Verdict.INCONCLUSIVE
+    assert any("going, the mode, is not in the trace" in reason for reason in report.reasons)
+
+
+def test_one_turn_decides_nothing(patrol: Program) -> None:
+    drive = patrol_log(Patrol().robot(), 10.0, 16)
+
+    found = switching(patrol, drive)
+
+    assert found.standing is Standing.UNDECIDED
+    assert "record more switches from forward to back" in found.advice[0]
+
+
+def test_a_switch_beside_a_gap_is_not_judged(patrol: Program) -> None:
+    drive = patrol_log(Patrol().robot(), 60.0, 17)
+    x = drive.series["x"]
+    kept = (x.times < 2.0) | (x.times > 4.0)
+    cut = replace(x, times=x.times[kept], values=x.values[kept])
+    drive = replace(drive, series=drive.series | {"x": cut})
+
+    found = switching(patrol, drive)
+
+    assert found.switches[0].sort is SwitchSort.UNJUDGED
+    assert way(found, "forward").standing is Standing.WITHIN
+
+
+def test_at_the_tolerance_itself_neither_verdict_is_common(patrol: Program) -> None:
+    standings = []
+    for seed in range(30):
+        drive = patrol_log(Patrol(x1=1.55).robot(), 60.0, 100 + seed)
+        timing = way(switching(patrol, drive), "forward").timing
+        assert timing is not None
+        standings.append(timing.standing)
+
+    # Both are to come in at most 2.5 % of cases; 4 or more of 30 would have a chance of 1 %.
+    assert standings.count(Standing.WITHIN) < 4
+    assert standings.count(Standing.EXCEEDED) < 4
