@@ -9,7 +9,7 @@ from runtime.program import Binding, Control, Program, State
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from verifier.traces.faults import binding_diagnostic, nearest_help, origin_span
-from verifier.traces.files.log import LogFile, MessageLog, Sheet
+from verifier.traces.files.log import LogFile, MessageLog, Sheet, Wanted
 from verifier.traces.messages.paths import (
     MessagePath,
     PathError,
@@ -39,14 +39,18 @@ class Bound:
         return self.path is not None and self.path.derived != ""
 
 
-def wanted_paths(program: Program) -> dict[str, tuple[MessagePath, ...]]:
-    """By topic, the paths of the program's bindings, its own recordings' included."""
+def wanted_by(program: Program) -> Wanted:
+    """What the program's bindings name in a log, in its own recordings too."""
     wanted: dict[str, dict[str, MessagePath]] = {}
-    for binding in (*program.bindings, *_own_bindings(program)):
+    bindings = (*program.bindings, *_own_bindings(program))
+    for binding in bindings:
         with suppress(PathError):
             path = parse_path(binding.path)
             wanted.setdefault(path.topic, {})[path.text] = path
-    return {topic: tuple(paths.values()) for topic, paths in wanted.items()}
+    columns = {parse_column(binding.path) for binding in bindings if binding.path}
+    columns |= {binding.name for binding in bindings}
+    by_topic = {topic: tuple(paths.values()) for topic, paths in wanted.items()}
+    return Wanted(by_topic, frozenset(columns))
 
 
 def resolve(program: Program, log: LogFile) -> tuple[Bound, ...]:

@@ -82,7 +82,7 @@ class Inventory:
 
 def inspect(path: Path) -> Inventory:
     """What the log at `path` holds; raises SpecError V301, V302 or V309."""
-    log = open_log(path, Wanted(None, BYTES_PER_TOPIC))
+    log = open_log(path, Wanted(None, None, BYTES_PER_TOPIC))
     if isinstance(log, Sheet):
         topics: tuple[TopicInfo, ...] = (_sheet_info(log),)
         times, kind = log.times, "CSV"

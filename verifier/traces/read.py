@@ -10,11 +10,11 @@ import numpy as np
 from runtime.arrays import Array, Booleans, Integers, frozen
 from runtime.program import Binding, Kind, Program, State
 from spec_schema.diagnostics import Diagnostic, SpecError
-from verifier.traces.bindings import Bound, resolve, texts_of, wanted_paths
+from verifier.traces.bindings import Bound, resolve, texts_of, wanted_by
 from verifier.traces.cleaning import Ordering, order
 from verifier.traces.clock import Clock, choose_clocks, stamp_fault
 from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fault
-from verifier.traces.files.log import LogFile, MessageLog, Progress, Sheet, Wanted
+from verifier.traces.files.log import LogFile, MessageLog, Progress, Sheet
 from verifier.traces.files.open_log import open_log
 from verifier.traces.messages.fields import FieldError
 from verifier.traces.messages.paths import MessagePath
@@ -40,7 +40,7 @@ def read_trace(
     strict: any loss is an error. Raises SpecError V301 to V313, all at once, where nothing can
     be judged.
     """
-    log = open_log(path, Wanted(wanted_paths(program)), progress)
+    log = open_log(path, wanted_by(program), progress)
     if isinstance(log, MessageLog) and not log.streams:
         raise file_fault(path, "V306", "no message can be read", _damage(log.losses))
     bound = resolve(program, log)

@@ -60,7 +60,7 @@ def sample_topic(streams: Sequence[Messages]) -> Samples:
 
 def sample_sheet(sheet: Sheet, names: Sequence[str]) -> Samples:
     """The named columns of a CSV file, which has no stamps beside its time column."""
-    columns = {name: _numeric(sheet.columns[name]) for name in names}
+    columns = {name: sheet.columns[name] for name in names}
     return Samples(sheet.name, sheet.times, None, columns, ())
 
 
@@ -76,19 +76,3 @@ def _sample_stream(stream: Messages) -> tuple[Samples, Places]:
         times, places = times[values.readable], places[values.readable]
     topic = stream.channel.topic
     return Samples(topic, times, values.stamps, values.columns, tuple(losses)), places
-
-
-def _numeric(cells: Sequence[str]) -> Column:
-    """Numbers and the texts that they were read from."""
-    try:
-        numbers = np.array(cells, dtype=np.float64)
-    except ValueError:
-        numbers = np.array([_number(cell) for cell in cells], dtype=np.float64)
-    return Column(numbers, tuple(cells))
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return np.nan

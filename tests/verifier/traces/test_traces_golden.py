@@ -31,7 +31,7 @@ def logs(workshop: Any, make: Any) -> Path:
         workshop.cdr("/odom", 5.0 + i, workshop.odometry(5.0 + i, x=float(i))) for i in range(20)
     ]
     notes += [make.said("/other", 5.0 + i, y=float(i)) for i in range(20)]
-    notes += [make.note("/proto", 5.0, b"\x08\x01", "protobuf", "made.Y", "protobuf")]
+    notes += [make.note("/proto", 5.0, b"\x08\x01", "flatbuffer", "made.Y", "flatbuffer")]
     notes += [make.note("/custom", 5.0, bytes(12), "cdr")]
     workshop.mcap(notes, "drive.mcap", silent=("/silent",))
     workshop.text("", "empty.mcap")

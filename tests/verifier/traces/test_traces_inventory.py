@@ -52,7 +52,7 @@ def test_the_inventory_of_json_and_of_what_cannot_be_read(workshop: Any, make: A
         )
         for i in range(5)
     ]
-    notes += [make.note("/proto", 11.0, b"x", "protobuf", "made.Y", "protobuf")]
+    notes += [make.note("/proto", 11.0, b"x", "flatbuffer", "made.Y", "flatbuffer")]
     path = workshop.mcap(notes, attachments={"drive.specc": b"compiled"})
 
     found = inspect(path)
@@ -61,7 +61,7 @@ def test_the_inventory_of_json_and_of_what_cannot_be_read(workshop: Any, make: A
     assert (found.start, found.duration, found.size) == (10.0, 2.0, path.stat().st_size)
     proto, state = found.topics
     assert (proto.count, proto.fields) == (1, ())
-    assert "protobuf" in proto.note
+    assert "flatbuffer" in proto.note
     assert (state.count, state.rate, state.duration) == (5, 2.0, 2.0)
     fields = {field.path: field for field in state.fields}
     assert set(fields) == {

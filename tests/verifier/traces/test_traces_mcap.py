@@ -252,9 +252,9 @@ def test_several_channels_of_one_topic_are_read_together(workshop: Any, make: An
 
 
 def test_a_channel_in_another_encoding_is_refused_by_name(workshop: Any, make: Any) -> None:
-    path = workshop.mcap([make.note("/a", 0.0, b"x", "protobuf", "A", "protobuf")])
+    path = workshop.mcap([make.note("/a", 0.0, b"x", "flatbuffer", "A", "flatbuffer")])
 
-    with pytest.raises(SpecError, match=r"(?s)V307.*'protobuf'.*json"):
+    with pytest.raises(SpecError, match=r"(?s)V307.*'flatbuffer'.*json"):
         workshop.read(path, x="/a.x")
 
 

@@ -37,12 +37,18 @@ _REST = ("nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds")
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Clocked:
-    """times: (rows,) nanoseconds where `valid`; `note` says which column and why this unit."""
+    """times: (rows,) nanoseconds where `valid`; `note` says which column and why this unit.
+
+    scale: nanoseconds a unit. rest: the column of nanoseconds beside a column of whole seconds,
+    or empty.
+    """
 
     column: str
     times: Integers
     valid: Booleans
     note: str
+    scale: int
+    rest: str = ""
 
 
 def find_clock(columns: Mapping[str, Sequence[str]]) -> Clocked | None:
@@ -60,6 +66,17 @@ def find_clock(columns: Mapping[str, Sequence[str]]) -> Clocked | None:
     return None
 
 
+def clock_times(
+    clocked: Clocked, columns: Mapping[str, Sequence[str]]
+) -> tuple[Integers, Booleans]:
+    """The times of further rows by the same column, and which of them have one."""
+    times, valid = _nanoseconds(columns[clocked.column], clocked.scale)
+    if not clocked.rest:
+        return times, valid
+    rest, also = _nanoseconds(columns[clocked.rest], 1)
+    return times + rest, valid & also
+
+
 def _rest_column(name: str, columns: Mapping[str, Sequence[str]]) -> str | None:
     """The column of nanoseconds that belongs to a column of whole seconds."""
     found = _SECONDS.match(name)
@@ -71,7 +88,7 @@ def _split_clock(name: str, rest: str, columns: Mapping[str, Sequence[str]]) -> 
     seconds, first = _nanoseconds(columns[name], 10**9)
     nanoseconds, second = _nanoseconds(columns[rest], 1)
     note = f"times are '{name}' (seconds) and '{rest}' (nanoseconds)"
-    return Clocked(name, seconds + nanoseconds, first & second, note)
+    return Clocked(name, seconds + nanoseconds, first & second, note, 10**9, rest)
 
 
 def _clock(name: str, cells: Sequence[str], unit: str | None) -> Clocked:
@@ -82,7 +99,8 @@ def _clock(name: str, cells: Sequence[str], unit: str | None) -> Clocked:
         scale = _scale_of(cells)
         why = "seconds since 1970 would be about 1e9" if scale != 10**9 else "no unit in its name"
     times, valid = _nanoseconds(cells, scale)
-    return Clocked(name, times, valid, f"times are column '{name}' in {_SHORT[scale]} ({why})")
+    note = f"times are column '{name}' in {_SHORT[scale]} ({why})"
+    return Clocked(name, times, valid, note, scale)
 
 
 def _scale_of(cells: Sequence[str]) -> int:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from runtime.arrays import Integers
 from verifier.traces.messages.channel import Channel
+from verifier.traces.messages.columns import Column
 from verifier.traces.messages.paths import MessagePath
 from verifier.traces.messages.reading import Values
 from verifier.traces.trace import Loss
@@ -62,13 +63,13 @@ class MessageLog:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Sheet:
-    """A CSV file: `columns` of cells as text, `times` (rows,) in nanoseconds.
+    """A CSV file: all its `columns`, empty where not asked for, `times` (rows,) in nanoseconds.
 
     time_column: which column the times came from.
     """
 
     source: str
-    columns: dict[str, tuple[str, ...]]
+    columns: dict[str, Column]
     times: Integers
     time_column: str
     losses: tuple[Loss, ...]
@@ -88,11 +89,13 @@ LogFile: TypeAlias = MessageLog | Sheet
 class Wanted:
     """What a reader shall read.
 
-    paths: of which topics, and what in their messages; None: all that there is. limit: the
-    messages' bytes of a channel after which no more values are read, only times.
+    paths: of which topics, and what in their messages; None: all that there is. columns: of a
+    CSV file; None: all. limit: the messages' bytes of a channel after which no more values are
+    read, only times.
     """
 
     paths: Mapping[str, tuple[MessagePath, ...]] | None
+    columns: frozenset[str] | None
     limit: int | None = None
 
     def has(self, topic: str) -> bool:

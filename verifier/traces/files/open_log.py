@@ -1,23 +1,37 @@
 """A log of any kind, told by its first bytes and not by its name."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from spec_schema.diagnostics import SpecError
+from spec_schema.source import Source
 from verifier.traces.faults import file_fault
 from verifier.traces.files.bag1_file import is_bag1, read_bag1
 from verifier.traces.files.bag2_file import is_sqlite, read_bag2
-from verifier.traces.files.csv_file import is_csv, read_csv
+from verifier.traces.files.csv_file import read_csv
+from verifier.traces.files.csv_layout import is_csv
 from verifier.traces.files.log import LogFile, MessageLog, Messages, Progress, Wanted
 from verifier.traces.files.mcap_file import find_attachment, is_mcap, read_mcap
+from verifier.traces.files.packed_file import is_packed, unpack_file
+from verifier.traces.files.ulog_file import is_ulog, read_ulog
 from verifier.traces.trace import Loss
 
 HEAD_BYTES = 1 << 16
 
-_KINDS = "MCAP, ROS 1 bag, ROS 2 bag (folder or .db3), CSV with a header line"
+_KINDS = "MCAP, ROS 1 bag, ROS 2 bag (folder or .db3), ULog, CSV with a header line"
+
+_READERS: tuple[tuple[Callable[[bytes], bool], Callable[[Path, Wanted, Progress], LogFile]], ...]
+_READERS = (
+    (is_mcap, read_mcap),
+    (is_bag1, read_bag1),
+    (is_sqlite, read_bag2),
+    (is_ulog, read_ulog),
+    (is_csv, read_csv),
+)
 
 
 def open_log(path: Path, wanted: Wanted, progress: Progress | None = None) -> LogFile:
@@ -58,15 +72,44 @@ def _read_file(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
     head = _head(path)
     if not head:
         raise file_fault(path, "V302", "the file is empty")
-    if is_mcap(head):
-        return read_mcap(path, wanted, tell)
-    if is_bag1(head):
-        return read_bag1(path, wanted, tell)
-    if is_sqlite(head):
-        return read_bag2(path, wanted, tell)
-    if is_csv(head):
-        return read_csv(path)
-    raise file_fault(path, "V302", "this is no log that specc knows", f"known: {_KINDS}")
+    if is_packed(head):
+        return _read_packed(path, wanted, tell)
+    for known, read in _READERS:
+        if known(head):
+            return read(path, wanted, tell)
+    if path.suffix == ".mcap":
+        # Its first bytes may be what was overwritten.
+        log = read_mcap(path, wanted, tell)
+        if log.streams:
+            return log
+    raise file_fault(path, "V302", _strange(head), f"known: {_KINDS}")
+
+
+def _strange(head: bytes) -> str:
+    """What a file is instead of a log."""
+    if head.startswith(b"version https://git-lfs"):
+        return "this is a pointer of Git LFS, not the file itself (git lfs pull)"
+    if not head.strip(b"\0"):
+        return "the file begins with nothing but zero bytes"
+    if head[:512].lstrip()[:1] == b"<":
+        return "this is a page of the web, not a log"
+    return "this is no log that specc knows"
+
+
+def _read_packed(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
+    """The log inside; it is unpacked into a temporary file first."""
+    with TemporaryDirectory(prefix="specc-") as folder:
+        inside = Path(folder) / path.stem
+        fault = unpack_file(path, inside)
+        if is_packed(_head(inside)):
+            raise file_fault(path, "V302", "the file is packed twice", "unpack it first")
+        try:
+            log = open_log(inside, wanted, tell)
+        except SpecError as error:
+            about = [replace(d, source=Source(str(path), "")) for d in error.diagnostics]
+            raise SpecError(about) from error
+    lost = (Loss("packed file damaged", 1, fault),) if fault else ()
+    return replace(log, source=str(path), losses=(*lost, *log.losses))
 
 
 def _read_folder(path: Path, wanted: Wanted, tell: Progress) -> LogFile:

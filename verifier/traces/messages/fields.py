@@ -1,32 +1,18 @@
-"""What fields the messages of a channel have, and whether a path leads to a number.
+"""Whether a path leads to a number in the messages of a channel, and where stamps stand."""
 
-JSON messages have no binding definition, so their shape is taken from the first of them, in the
-same form as a definition.
-"""
-
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import final
 
 from verifier.traces.faults import nearest_help
-from verifier.traces.messages.channel import Channel
-from verifier.traces.messages.definitions import (
-    DefinitionError,
-    Many,
-    Node,
-    Number,
-    Struct,
-    Text,
-    definition,
-)
-from verifier.traces.messages.json_messages import Json, parse
+from verifier.traces.messages.definitions import Many, Node, Number, Struct, Text
 from verifier.traces.messages.paths import DERIVED, MessagePath, Steps, steps_text
+from verifier.traces.messages.ulog_formats import FAMILY
 
-EXAMPLES = 20
 _STAMPS: tuple[Steps, ...] = (("header", "stamp"), ("stamp",), ("timestamp",))
-_SECONDS = frozenset({"sec", "secs"})
-_NANOSECONDS = frozenset({"nanosec", "nsec", "nsecs"})
+_SECONDS = frozenset({"sec", "secs", "seconds"})
+_NANOSECONDS = frozenset({"nanosec", "nsec", "nsecs", "nanos"})
 _QUATERNION = frozenset("xyzw")
+_PX4 = ("px4_msgs/", FAMILY)
 
 
 @final
@@ -59,19 +45,6 @@ class StampLeaves:
     nanoseconds: Steps
 
 
-def shape(channel: Channel, examples: Sequence[bytes]) -> Struct:
-    """The fields of a channel's messages; raises FieldError V307 or V311.
-
-    examples: the first messages, which show it where nothing defines it.
-    """
-    if channel.encoding in {"cdr", "ros1"}:
-        return _defined(channel)
-    if channel.encoding == "json":
-        return _shown(channel, examples)
-    message = f"messages of {channel.topic} are encoded as {channel.encoding!r}"
-    raise FieldError("V307", message, "specc reads cdr (ROS 2), ros1 and json")
-
-
 def check(root: Struct, path: MessagePath) -> Node:
     """The node at the end of the path, a number or a text; raises FieldError V304 or V305."""
     node: Node = root
@@ -83,19 +56,36 @@ def check(root: Struct, path: MessagePath) -> Node:
             raise FieldError(error.code, error.message, error.help, depth) from error
     at = steps_text(path.steps)
     if path.derived:
-        if not is_quaternion(node):
+        if not is_quaternion(node, root):
             message = f"@{path.derived} needs a quaternion, {at} is {_kind(node)}"
-            raise FieldError("V305", message, _inside_help(node))
+            raise FieldError("V305", message, _inside_help(node, root))
     elif isinstance(node, Struct | Many):
-        raise FieldError("V305", f"{at} is {_kind(node)}, not a number", _inside_help(node))
+        raise FieldError("V305", f"{at} is {_kind(node)}, not a number", _inside_help(node, root))
     return node
 
 
-def is_quaternion(node: Node) -> bool:
-    """Whether the node has exactly the numbers x, y, z and w."""
+def is_quaternion(node: Node, root: Struct) -> bool:
+    """Whether the node of a message `root` has exactly the numbers x, y, z and w.
+
+    In PX4's messages also a list of four floats.
+    """
+    if isinstance(node, Many):
+        return root.name.startswith(_PX4) and node.count == 4 and node.item == Number("f4")
     if not isinstance(node, Struct) or frozenset(node.names) != _QUATERNION:
         return False
     return all(isinstance(child, Number) for _, child in node.fields)
+
+
+def leaves(root: Struct, path: MessagePath) -> tuple[Steps, ...]:
+    """The numbers that have to be read for a path: one, or x, y, z and w of a quaternion.
+
+    PX4's quaternions are lists of w, x, y and z.
+    """
+    if not path.derived:
+        return (path.steps,)
+    node = check(root, path)
+    keys: Steps = (1, 2, 3, 0) if isinstance(node, Many) else ("x", "y", "z", "w")
+    return tuple((*path.steps, key) for key in keys)
 
 
 def is_stamp(node: Node) -> bool:
@@ -116,39 +106,6 @@ def stamp_leaves(root: Struct) -> StampLeaves | None:
             rest = next(name for name in node.names if name in _NANOSECONDS)
             return StampLeaves((*steps, seconds), (*steps, rest))
     return None
-
-
-def _defined(channel: Channel) -> Struct:
-    if not channel.message_type:
-        message = f"the log names no message type for {channel.topic}"
-        raise FieldError("V311", message, "record again with the message definitions")
-    try:
-        text = channel.schema.decode("utf-8", errors="replace")
-        return definition(channel.message_type, channel.schema_encoding, text)
-    except DefinitionError as error:
-        message = f"messages of {channel.topic} can't be decoded: {error}"
-        raise FieldError("V311", message, "record again with the message definitions") from error
-
-
-def _shown(channel: Channel, examples: Sequence[bytes]) -> Struct:
-    fields: dict[str, Node] = {}
-    for payload in examples[:EXAMPLES]:
-        try:
-            message = parse(payload)
-        except ValueError:
-            continue
-        node = _shape_of(message)
-        if isinstance(node, Struct):
-            fields |= dict(node.fields)
-    return Struct(channel.message_type or "message", tuple(fields.items()))
-
-
-def _shape_of(message: Json) -> Node:
-    if isinstance(message, dict):
-        return Struct("object", tuple((name, _shape_of(value)) for name, value in message.items()))
-    if isinstance(message, list):
-        return Many(_shape_of(message[0] if message else None), None)
-    return Text() if isinstance(message, str) else Number("f8")
 
 
 def _field(node: Node, name: str, above: str) -> Node:
@@ -185,8 +142,8 @@ def _kind(node: Node) -> str:
             return f"a {node.name}"
 
 
-def _inside_help(node: Node) -> str:
-    if is_quaternion(node):
+def _inside_help(node: Node, root: Struct) -> str:
+    if is_quaternion(node, root):
         return "of a quaternion: " + ", ".join(f".@{name}" for name in DERIVED)
     if isinstance(node, Struct):
         return f"fields: {', '.join(node.names)}"

@@ -30,13 +30,15 @@ class Packing:
     """How a message's bytes are laid out after its first `head` bytes.
 
     align: numbers stand at multiples of their size, but of no more than this. sized: lists of
-    anything but numbers have their size in bytes before them.
+    anything but numbers have their size in bytes before them. spare: how many bytes may be left
+    at the end: CDR writers may pad it to four bytes, PX4 to eight.
     """
 
     head: int
     align: int
     sized: bool
     order: str
+    spare: int
 
     @property
     def aligned(self) -> bool:
@@ -44,12 +46,15 @@ class Packing:
         return self.align > 1
 
 
-PACKED = Packing(0, align=1, sized=False, order="<")
+_PACKED = {
+    "ros1": Packing(0, align=1, sized=False, order="<", spare=0),
+    "ulog": Packing(0, align=1, sized=False, order="<", spare=7),
+}
 _CDR = {
-    b"\0\0": Packing(4, align=8, sized=False, order=">"),
-    b"\0\1": Packing(4, align=8, sized=False, order="<"),
-    b"\0\6": Packing(4, align=4, sized=True, order=">"),
-    b"\0\7": Packing(4, align=4, sized=True, order="<"),
+    b"\0\0": Packing(4, align=8, sized=False, order=">", spare=3),
+    b"\0\1": Packing(4, align=8, sized=False, order="<", spare=3),
+    b"\0\6": Packing(4, align=4, sized=True, order=">", spare=3),
+    b"\0\7": Packing(4, align=4, sized=True, order="<", spare=3),
 }
 
 
@@ -78,8 +83,8 @@ class Layout:
 
 def packing(payload: bytes, encoding: str) -> Packing:
     """How the message is packed; raises WireError for an encapsulation other than plain CDR."""
-    if encoding != "cdr":
-        return PACKED
+    if encoding in _PACKED:
+        return _PACKED[encoding]
     found = _CDR.get(payload[:2])
     if found is None or len(payload) < found.head:
         raise WireError(f"encapsulation 0x{payload[:2].hex()} is not plain CDR or XCDR2")
@@ -91,8 +96,7 @@ def find_layout(payload: bytes, encoding: str, root: Struct, leaves: Leaves) -> 
     walker = _Walker(payload, packing(payload, encoding))
     walker.visit(root, leaves, 0)
     spare = len(payload) - walker.position
-    # CDR writers may pad the end of a message to four bytes.
-    if spare < 0 or spare > (3 if walker.packing.aligned else 0):
+    if not 0 <= spare <= walker.packing.spare:
         raise WireError(f"{len(payload)} bytes, its definition makes {walker.position} of it")
     return Layout(walker.slots, tuple(walker.lengths[: walker.needed]))
 

@@ -14,14 +14,16 @@ DEEPEST = 16
 
 def list_fields(root: Struct) -> tuple[Steps, ...]:
     """The leaves of a message: all items of short lists, the first of long ones; no stamps."""
-    found = (steps for steps, node in _walk(root, (), DEEPEST) if not isinstance(node, Struct))
+    found = (
+        steps for steps, node in _walk(root, (), DEEPEST) if not isinstance(node, Struct | Many)
+    )
     return tuple(islice(found, MOST_FIELDS))
 
 
 def list_quaternions(root: Struct) -> tuple[Steps, ...]:
     """Where quaternions stand among the first fields of a message."""
     nodes = islice(_walk(root, (), DEEPEST), MOST_FIELDS)
-    return tuple(steps for steps, node in nodes if is_quaternion(node))
+    return tuple(steps for steps, node in nodes if is_quaternion(node, root))
 
 
 def all_paths(root: Struct, topic: str) -> tuple[MessagePath, ...]:
@@ -34,8 +36,9 @@ def all_paths(root: Struct, topic: str) -> tuple[MessagePath, ...]:
 
 
 def _walk(node: Node, above: Steps, depth: int) -> Iterator[tuple[Steps, Node]]:
-    """The structs and leaves at and below a node."""
+    """The structs, lists and leaves at and below a node."""
     if isinstance(node, Many):
+        yield above, node
         for index in range(_items(node) if depth else 0):
             yield from _walk(node.item, (*above, index), depth - 1)
         return

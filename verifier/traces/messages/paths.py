@@ -46,11 +46,6 @@ class MessagePath:
     steps: Steps
     derived: str
 
-    @property
-    def leaves(self) -> tuple[Steps, ...]:
-        """The numbers that have to be read for it: one, or x, y, z and w of a quaternion."""
-        return tuple((*self.steps, name) for name in "xyzw") if self.derived else (self.steps,)
-
     def part(self, depth: int) -> tuple[int, int] | None:
         """From where to where in the text the step stands; None where it is written unusually."""
         above, whole = (path_text(self.topic, self.steps[:end]) for end in (depth, depth + 1))

@@ -7,11 +7,10 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
-from verifier.traces.messages import json_messages, wire
 from verifier.traces.messages.channel import Channel
-from verifier.traces.messages.columns import Column, Decoded, joined
-from verifier.traces.messages.definitions import Struct
-from verifier.traces.messages.fields import FieldError, StampLeaves, check, shape, stamp_leaves
+from verifier.traces.messages.codecs import Codec, find_codec
+from verifier.traces.messages.columns import Column, joined
+from verifier.traces.messages.fields import FieldError, StampLeaves, check, leaves, stamp_leaves
 from verifier.traces.messages.leaves import all_paths
 from verifier.traces.messages.paths import MessagePath, Steps
 from verifier.traces.messages.quaternions import angle
@@ -47,7 +46,8 @@ class Reader:
         self._channel = channel
         self._wanted = paths
         self._paths: list[MessagePath] = []
-        self._root: Struct | None = None
+        self._codec: Codec | None = None
+        self._leaves: dict[str, tuple[Steps, ...]] = {}
         self._stamp: StampLeaves | None = None
         self._asked: list[Steps] = []
         self._columns: dict[str, list[Column]] = {}
@@ -59,12 +59,12 @@ class Reader:
 
     def feed(self, payloads: Sequence[bytes]) -> None:
         """The next messages."""
-        if self._root is None and self._fault is None:
+        if self._codec is None and self._fault is None:
             self._open(payloads)
-        if self._root is None:
+        if self._codec is None:
             self._readable.append(np.zeros(len(payloads), dtype=np.bool_))
             return
-        decoded = _decode(self._channel, payloads, self._root, self._asked)
+        decoded = self._codec.decode(payloads, self._asked)
         self._readable.append(decoded.readable)
         self._reason = self._reason or decoded.reason
         rows = np.flatnonzero(decoded.readable)
@@ -72,14 +72,16 @@ class Reader:
         columns = decoded.columns if whole else tuple(one.rows(rows) for one in decoded.columns)
         found = dict(zip(self._asked, columns, strict=True))
         for path in self._paths:
-            self._columns[path.text].append(_value(path, found))
+            self._columns[path.text].append(
+                _value(path, [found[leaf] for leaf in self._leaves[path.text]])
+            )
         if self._stamp:
             seconds, rest = found[self._stamp.seconds], found[self._stamp.nanoseconds]
             self._stamps.append(_stamps(seconds, rest))
 
     def finished(self) -> Values:
         """All that was read; the reader keeps nothing."""
-        if self._root is None and self._fault is None:
+        if self._codec is None and self._fault is None:
             self._open(())
         columns = {}
         for path in self._paths:
@@ -97,12 +99,12 @@ class Reader:
     def _open(self, examples: Sequence[bytes]) -> None:
         """Finds the shape of the messages, and which of the paths lead to numbers in it."""
         try:
-            root = shape(self._channel, examples)
+            self._codec = find_codec(self._channel, examples)
         except FieldError as error:
             self._fault = error
             self._faults = {path.text: error for path in self._wanted or ()}
             return
-        self._root = root
+        root = self._codec.root
         wanted = all_paths(root, self._channel.topic) if self._wanted is None else self._wanted
         for path in wanted:
             try:
@@ -111,26 +113,19 @@ class Reader:
                 self._faults[path.text] = error
             else:
                 self._paths.append(path)
+                self._leaves[path.text] = leaves(root, path)
         self._stamp = stamp_leaves(root)
-        self._asked = list(dict.fromkeys(leaf for path in self._paths for leaf in path.leaves))
+        self._asked = list(dict.fromkeys(leaf for found in self._leaves.values() for leaf in found))
         if self._stamp:
             stamp = (self._stamp.seconds, self._stamp.nanoseconds)
             self._asked += [leaf for leaf in stamp if leaf not in self._asked]
         self._columns = {path.text: [] for path in self._paths}
 
 
-def _decode(
-    channel: Channel, payloads: Sequence[bytes], root: Struct, asked: Sequence[Steps]
-) -> Decoded:
-    if channel.encoding == "json":
-        return json_messages.decode(payloads, asked)
-    return wire.decode(payloads, channel.encoding, root, asked)
-
-
-def _value(path: MessagePath, found: Mapping[Steps, Column]) -> Column:
+def _value(path: MessagePath, found: Sequence[Column]) -> Column:
     if not path.derived:
-        return found[path.steps]
-    x, y, z, w = (found[leaf].numbers for leaf in path.leaves)
+        return found[0]
+    x, y, z, w = (column.numbers for column in found)
     return Column(angle(path.derived, x, y, z, w), None)
 
 
