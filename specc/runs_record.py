@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from specc.runs import WORST_FIRST, Outcome, Unusable, unusable, verifications, together
+from specc.runs import WORST_FIRST, Outcome, Unusable, together, unusable, verifications
 from specc.verifying import Verification
 from verifier.report.examination_record import FORMAT, examination_record
 

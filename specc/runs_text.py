@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from spec_schema.diagnostics import render
-from specc.runs import Outcome, Unusable, counted, unusable, verifications, together
+from specc.runs import Outcome, Unusable, counted, together, unusable, verifications
 from specc.verifying import Verification
 from verifier.report.examination_text import examination_text
 from verifier.report.layout import section, table, wrapped

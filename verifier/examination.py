@@ -10,7 +10,9 @@ from runtime.program import Program
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.fidelity.switching.judge import switching_in
 from verifier.fidelity.verify import judged
+from verifier.limits.limits import limits_of
 from verifier.report.examination import Examination
+from verifier.robot_topology.compare import compare_features
 from verifier.scores.scores import scores_of
 from verifier.traces.trace import Trace
 
@@ -37,12 +39,23 @@ def examine(
     origins = origins_of(program)
     if only_verdict:
         return Examination(report, origins=origins)
+    tell("changes of mode")
     switching = switching_in(program, trace)
+    tell("features of the field")
+    features = compare_features(program, trace, study)
     if study is None:
-        return Examination(report, switching=switching, origins=origins)
-    tell("scoring")
-    scores = scores_of(study, report)
-    return Examination(report, switching=switching, scores=scores, origins=origins)
+        return Examination(report, switching=switching, features=features, origins=origins)
+    tell("the limits of this trace")
+    limits = limits_of(program, trace, study, report)
+    tell("scores")
+    return Examination(
+        report,
+        switching=switching,
+        limits=limits,
+        features=features,
+        scores=scores_of(study, report),
+        origins=origins,
+    )
 
 
 def origins_of(program: Program) -> dict[str, str]:

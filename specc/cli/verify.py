@@ -154,7 +154,7 @@ def _write(outcomes: Sequence["Outcome"], output: Sequence[Path], *, is_one: boo
 
 def _status(outcomes: Sequence["Outcome"]) -> int:
     """2 where a recording can't be used, else that of the worst verdict."""
-    from specc.runs import unusable, together
+    from specc.runs import together, unusable
 
     if unusable(outcomes):
         return Status.BAD_INPUT

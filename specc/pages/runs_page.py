@@ -6,7 +6,7 @@ from typing import Final
 from specc.figures.quantities import percent, quantity, seconds
 from specc.pages.page import Page, RunRow, RunsPage
 from specc.pages.report_page import SIGNS, gathered, rendered
-from specc.runs import Outcome, Unusable, counted, verifications, together
+from specc.runs import Outcome, Unusable, counted, together, verifications
 from specc.runs_text import column_of, columns_of
 from specc.verifying import Verification
 from verifier.report.report import Coverage, Verdict

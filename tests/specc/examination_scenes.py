@@ -147,8 +147,8 @@ def limits(word: str = "") -> Limits:
     untold = NotTold(
         f"the gain of turn apart from its saturation{word}",
         ("turn",),
-        "turn took only two values.",
-        "Drive with turn at 0.1 and 0.2 rad/s as well.",
+        "turn took only two values",
+        "drive with turn at 0.1 and 0.2 rad/s as well",
         "husky_drive.yaml:21:3",
     )
     gain = tuple(

@@ -156,7 +156,7 @@ def _of_diagnosis(diagnosis: Diagnosis | None) -> Iterator[Finding]:
 
 def _of_limits(examination: Examination) -> Iterator[Finding]:
     for each in () if examination.limits is None else examination.limits.not_told:
-        message = f"{each.why} {each.suggestion}".strip()
+        message = f"this trace does not tell {each.what}: {each.why}; {each.suggestion}"
         yield Finding(Rule.NOT_TOLD, Level.NOTE, each.what, message, each.origin)
 
 

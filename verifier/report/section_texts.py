@@ -86,9 +86,7 @@ def _robot(each: FeatureNumber) -> str:
 
 
 def _limits(limits: Limits) -> str:
-    untold = [
-        " ".join([f"{each.what}:", each.why, each.suggestion]).strip() for each in limits.not_told
-    ]
+    untold = [f"{each.what}: {each.why}; {each.suggestion}" for each in limits.not_told]
     caught = [each.sentence for each in limits.caught]
     told = section("what this trace can't tell", [bullets(untold)])
     test = section("what would have been caught", [bullets([*caught, *limits.notes])])
