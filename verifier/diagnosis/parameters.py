@@ -90,7 +90,7 @@ def effect_of(parameter: Parameter) -> Effect:
     )
     return Effect(
         kind=kinds.get(parameter.kind, CandidateKind.BIAS),
-        applies_to=(parameter.name,) if parameter.name else (),
+        applies_to=(parameter.name or "all rates",),
         label=parameter.label,
         numbers=(number,),
         apply=_Move(parameter),

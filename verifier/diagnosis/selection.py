@@ -35,7 +35,7 @@ CLOSE: Final = 4.0
 """Candidates that gain as much but for this explain as well."""
 HINT: Final = 1.5
 """A linear forecast of the gain below this is not followed up."""
-MATTERS: Final = 0.05
+MATTERS: Final = 0.1
 """What is explained of a variable, root mean square, is at least this share of its tolerance."""
 SAME: Final = 0.02
 """Fits whose residuals differ by less than this share of what they explain are one and the same."""

@@ -1,0 +1,101 @@
+"""What all of it comes to, in a word and in sentences."""
+
+from typing import Final
+
+from verifier.diagnosis import sentences
+from verifier.diagnosis.naming import label_of
+from verifier.diagnosis.selection import Selection, Step, Tried
+from verifier.report.diagnosis import (
+    Candidate,
+    CandidateKind,
+    DepartureAfter,
+    Diagnosis,
+    DifferingRegion,
+    Refitted,
+    Told,
+)
+from verifier.report.report import Report, Standing
+
+SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
+
+
+def nothing_to_tell(windows: int) -> Diagnosis:
+    """For a trace that is too short."""
+    why = (
+        "nothing of the trace could be compared with the spec"
+        if windows == 0
+        else f"the trace holds {windows} windows only: too few to hold some of them out"
+    )
+    return Diagnosis(
+        Told.CANNOT_TELL, (f"why the robot departs can't be told: {why}",), (), (), (), ()
+    )
+
+
+def concluded(
+    selection: Selection,
+    candidates: tuple[Candidate, ...],
+    moved: tuple[Refitted, ...],
+    after: tuple[DepartureAfter, ...],
+    differs: tuple[DifferingRegion, ...],
+    report: Report,
+) -> tuple[Told, tuple[str, ...]]:
+    """The word, and the sentences; the deciding one first."""
+    taken = [each for each in candidates if each.is_taken]
+    departs = [each for each in after if each.standing is Standing.EXCEEDED]
+    if not taken:
+        return _unexplained(after, differs, report)
+    told = _told(selection, taken, departs)
+    said = [_opening(told, taken)]
+    said += [each.sentence for each in taken]
+    for step in selection.taken:
+        rivals = [_name(each) for each in step.alike if each.matters]
+        if rivals:
+            said.append(f"{_name(step.tried[0])}: {sentences.either(rivals)}")
+    said += [sentences.still(each) for each in after]
+    said += [each.sentence for each in differs[:1] if departs]
+    said += [f"beside it, {each.sentence}" for each in moved if not each.is_moved]
+    return told, tuple(said)
+
+
+def _told(selection: Selection, taken: list[Candidate], departs: list[DepartureAfter]) -> Told:
+    if any(_is_open(step) for step in selection.taken):
+        return Told.CANNOT_TELL
+    if departs or any(each.kind not in SCALARS for each in taken):
+        return Told.STRUCTURE_DIFFERS
+    return Told.SAME_STRUCTURE
+
+
+def _is_open(step: Step) -> bool:
+    """Whether something else, that matters as well, explains as much."""
+    return any(each.matters for each in step.alike)
+
+
+def _name(tried: Tried) -> str:
+    count = len(tried.effect.numbers)
+    return label_of(tried.effect, tried.fitted.values[len(tried.fitted.values) - count :])
+
+
+def _opening(told: Told, taken: list[Candidate]) -> str:
+    names = ", ".join(each.label for each in taken)
+    match told:
+        case Told.SAME_STRUCTURE:
+            return f"same structure, other numbers: {names}"
+        case Told.CANNOT_TELL:
+            return f"several explanations are as good; the first is {names}"
+        case _:
+            return f"the structure differs: {names}"
+
+
+def _unexplained(
+    after: tuple[DepartureAfter, ...], differs: tuple[DifferingRegion, ...], report: Report
+) -> tuple[Told, tuple[str, ...]]:
+    departs = [each for each in report.variables if each.standing is Standing.EXCEEDED]
+    if not departs:
+        text = "no difference that matters beside the tolerances was found"
+        return Told.NO_DIFFERENCE, (text,)
+    left = tuple(sentences.still(each) for each in after)
+    if differs:
+        said = "the structure differs, and no candidate explains how"
+        return Told.STRUCTURE_DIFFERS, (said, *(each.sentence for each in differs[:2]), *left)
+    said = "the robot departs, but no candidate explains it, nor does it depart in one place"
+    return Told.CANNOT_TELL, (said, *left)

@@ -1,0 +1,115 @@
+"""The diagnosis: which numbers of the spec moved, and what would explain a departure.
+
+First every explanation is tried beside the spec as it is: numbers of the spec, gains and offsets,
+and what changes the structure. Those that predict held-out windows better are taken in, one by
+one. Then all numbers that the trace can tell are fitted together, and the verdict's own figures
+are worked out again.
+"""
+
+from typing import Final
+
+from runtime.program import Fidelity, Program, Unit
+from verifier.diagnosis.aftermath import altered_study
+from verifier.diagnosis.altered import Effect
+from verifier.diagnosis.candidates.clocks import effects_on_clocks
+from verifier.diagnosis.candidates.inputs import effects_on_inputs
+from verifier.diagnosis.candidates.rates import effects_on_rates
+from verifier.diagnosis.conclusion import concluded, nothing_to_tell
+from verifier.diagnosis.parameters import effect_of, parameters_of
+from verifier.diagnosis.profiled import setting_of
+from verifier.diagnosis.refitting import refitted
+from verifier.diagnosis.reporting import candidates_of, departures, reading_of, regions, told_of
+from verifier.diagnosis.rereading import Reread, reread
+from verifier.diagnosis.scene import Scene, scene_of
+from verifier.diagnosis.selection import CLEAR, Selection, select
+from verifier.fidelity.judging.judgement import results_of
+from verifier.fidelity.shooting.study import Study
+from verifier.report.diagnosis import Diagnosis
+from verifier.report.report import Report, Verdict
+from verifier.traces.trace import Trace
+
+FEWEST: Final = 4
+"""With fewer windows nothing can be held out."""
+
+
+def diagnose(program: Program, trace: Trace, study: Study | None, report: Report) -> Diagnosis:
+    """Why the robot in `trace` departs from `program`, as far as the trace tells.
+
+    study, report: as `verifier.fidelity.verify.judged` gives them; without a study, only other
+    ways of reading the trace are tried.
+    """
+    assert program.fidelity is not None, "what was judged has a fidelity"
+    fidelity = program.fidelity
+    if study is None:
+        return _of_unjudged(program, fidelity, trace, report)
+    scene = scene_of(program, study)
+    if scene.windows < FEWEST:
+        return nothing_to_tell(scene.windows)
+    selection = select(scene, effects_of(scene), fidelity.tolerance)
+    best = _better_reading(program, fidelity, trace, scene, selection, report)
+    if best is None:
+        return _told(program, fidelity, scene, study, selection, report, None)
+    other = select(best.scene, effects_of(best.scene), fidelity.tolerance)
+    return _told(program, fidelity, best.scene, best.study, other, report, best)
+
+
+def effects_of(scene: Scene) -> tuple[Effect, ...]:
+    """All that is tried, what is preferred among equals first."""
+    parameters = parameters_of(scene.program, scene.needs)
+    return (
+        *(effect_of(each) for each in parameters),
+        *effects_on_inputs(scene),
+        *effects_on_clocks(scene),
+        *effects_on_rates(scene),
+    )
+
+
+def _of_unjudged(program: Program, fidelity: Fidelity, trace: Trace, report: Report) -> Diagnosis:
+    found = reread(program, fidelity, trace, None, None)
+    if not found or found[0].gain < CLEAR or found[0].scene.windows < FEWEST:
+        return nothing_to_tell(0)
+    best = found[0]
+    selection = select(best.scene, effects_of(best.scene), fidelity.tolerance)
+    return _told(program, fidelity, best.scene, best.study, selection, report, best)
+
+
+def _better_reading(
+    program: Program,
+    fidelity: Fidelity,
+    trace: Trace,
+    scene: Scene,
+    selection: Selection,
+    report: Report,
+) -> Reread | None:
+    """A reading of the trace that explains more than all that was taken."""
+    if report.verdict is Verdict.PASS:
+        return None
+    gained = selection.plain.objective - selection.final.objective
+    found = reread(program, fidelity, trace, scene, selection.plain)
+    if found and found[0].gain > max(CLEAR, gained):
+        return found[0]
+    return None
+
+
+def _told(
+    program: Program,
+    fidelity: Fidelity,
+    scene: Scene,
+    study: Study,
+    selection: Selection,
+    report: Report,
+    best: Reread | None,
+) -> Diagnosis:
+    parameters = parameters_of(program, scene.needs)
+    numbers, joint = refitted(scene, selection.final, parameters, report.confidence)
+    setting = setting_of(scene, joint.effects, joint.values)
+    results = results_of(program, fidelity, altered_study(scene, study, setting))
+    units: dict[str, Unit] = report.units
+    after = departures(results, report)
+    differs = regions(results, units)
+    found = candidates_of(scene, selection, report.confidence)
+    if best is not None:
+        found = (reading_of(program, best), *found)
+    moved = told_of(numbers)
+    told, sentences = concluded(selection, found, moved, after, differs, report)
+    return Diagnosis(told, sentences, moved, after, found, differs)

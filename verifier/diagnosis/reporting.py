@@ -1,0 +1,172 @@
+"""From fits to the frozen types of the report."""
+
+from typing import Final
+
+import numpy as np
+
+from runtime.program import Program, Unit
+from verifier.diagnosis import sentences
+from verifier.diagnosis.candidates.inputs import origin_of
+from verifier.diagnosis.fitting import intervals_of
+from verifier.diagnosis.naming import kind_of, label_of
+from verifier.diagnosis.refitting import Number
+from verifier.diagnosis.rereading import Reread
+from verifier.diagnosis.scene import Scene
+from verifier.diagnosis.selection import Selection, Step, Tried
+from verifier.report.diagnosis import (
+    Candidate,
+    DepartureAfter,
+    DifferingRegion,
+    Evidence,
+    FittedNumber,
+    Refitted,
+)
+from verifier.report.report import Interval, Report, Standing, VariableResult
+
+SHOWN: Final = 6
+"""So many candidates that were not taken are reported."""
+CLEARLY: Final = 0.25
+"""A mean that is surely beyond this share of the tolerance makes a part differ."""
+
+
+def told_of(numbers: tuple[Number, ...]) -> tuple[Refitted, ...]:
+    """The refitted numbers, each with its sentence."""
+    return tuple(
+        Refitted(
+            kind=each.parameter.kind,
+            name=each.parameter.name,
+            unit=each.parameter.unit,
+            spec=each.parameter.spec,
+            value=each.value,
+            interval=each.interval,
+            is_moved=each.is_moved,
+            origin=each.parameter.origin,
+            sentence=sentences.of_parameter(
+                each.parameter, each.value, each.interval, moved=each.is_moved
+            ),
+        )
+        for each in numbers
+    )
+
+
+def departures(results: tuple[VariableResult, ...], report: Report) -> tuple[DepartureAfter, ...]:
+    """Each judged variable before and after."""
+    before = {each.name: each.declared.departure for each in report.variables}
+    return tuple(
+        DepartureAfter(
+            name=each.name,
+            unit=each.unit,
+            tolerance=each.tolerance,
+            noise=each.noise.sigma,
+            before=before.get(each.name, np.inf),
+            after=each.declared.departure,
+            interval=each.declared.interval,
+            standing=each.standing,
+            origin=each.origin,
+        )
+        for each in results
+    )
+
+
+def regions(
+    results: tuple[VariableResult, ...], units: dict[str, Unit]
+) -> tuple[DifferingRegion, ...]:
+    """The parts of the region in which a variable surely still departs, the worst first."""
+    found = [
+        (max(part.interval.low, -part.interval.high) / each.tolerance, each, part)
+        for each in results
+        for part in each.regions
+        if part.standing is Standing.EXCEEDED
+        or max(part.interval.low, -part.interval.high) > CLEARLY * each.tolerance
+    ]
+    found.sort(key=lambda item: -item[0])
+    return tuple(
+        DifferingRegion(each.name, each.unit, part, sentences.where(each.name, part, units))
+        for _, each, part in found
+    )
+
+
+def candidates_of(scene: Scene, selection: Selection, confidence: float) -> tuple[Candidate, ...]:
+    """Those that were taken, then the best of those that were not."""
+    taken = selection.taken
+    found = []
+    before: list[str] = []
+    for step in taken:
+        found.append(_candidate(scene, selection, step, step.tried[0], tuple(before), confidence))
+        before.append(found[-1].label)
+    named = {each.label for each in found}
+    rest = selection.steps[-1].tried if not taken else taken[0].tried[1:]
+    for tried in rest:
+        other = _candidate(scene, selection, None, tried, (), confidence)
+        if other.label not in named and len(found) < len(taken) + SHOWN and tried.gain > 0.0:
+            named.add(other.label)
+            found.append(other)
+    return tuple(found)
+
+
+def reading_of(program: Program, best: Reread) -> Candidate:
+    """A reading of the trace as the first candidate."""
+    reading = best.reading
+    bindings = {binding.name: binding for binding in program.bindings}
+    names = " and ".join(reading.applies_to)
+    sentence = {
+        "sign": f"{names} has the wrong sign in the log",
+        "swapped axes": f"{names} are swapped in the log",
+    }.get(str(reading.kind), f"the log has {reading.label}")
+    numbers = tuple(
+        FittedNumber("factor", Unit("1", 1.0), 1.0, factor, Interval(factor, factor))
+        for factor in reading.factors.values()
+    )
+    return Candidate(
+        kind=reading.kind,
+        applies_to=reading.applies_to,
+        label=reading.label,
+        numbers=numbers,
+        evidence=Evidence(best.scene.windows, best.share, best.gain, ()),
+        is_taken=True,
+        alike=(),
+        origin=origin_of(bindings, reading.applies_to[0]),
+        sentence=f"{sentence}; {sentences.evidence(best.share, ())}",
+    )
+
+
+def _candidate(
+    scene: Scene,
+    selection: Selection,
+    step: Step | None,
+    tried: Tried,
+    before: tuple[str, ...],
+    confidence: float,
+) -> Candidate:
+    """With the numbers of the last fit where it was taken, of its own fit where not."""
+    effect = tried.effect
+    fitted = selection.final if step is not None else tried.fitted
+    intervals = intervals_of(scene, fitted, confidence)
+    labels = [each.label for each in fitted.effects]
+    place = labels.index(effect.label)
+    first = sum(len(each.numbers) for each in fitted.effects[:place])
+    numbers = tuple(
+        FittedNumber(n.name, n.unit, n.neutral, fitted.values[first + i], intervals[first + i])
+        for i, n in enumerate(effect.numbers)
+    )
+    values = fitted.values[first : first + len(effect.numbers)]
+    alike = (
+        ()
+        if step is None
+        else tuple(
+            label_of(t.effect, t.fitted.values[len(t.fitted.values) - len(t.effect.numbers) :])
+            for t in (*step.same, *step.alike)
+        )
+    )
+    said = sentences.of_candidate(effect, values, numbers)
+    return Candidate(
+        kind=kind_of(effect, values),
+        applies_to=effect.applies_to,
+        label=label_of(effect, values),
+        numbers=numbers,
+        evidence=Evidence(scene.windows, tried.share, tried.gain, before),
+        is_taken=step is not None,
+        alike=alike,
+        origin=effect.origin,
+        sentence=f"{said}; {sentences.evidence(tried.share, before)}",
+    )

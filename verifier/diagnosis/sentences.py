@@ -1,0 +1,110 @@
+"""What a diagnosis says, in sentences."""
+
+from typing import Final
+
+import numpy as np
+
+from runtime.program import Unit
+from verifier.diagnosis.altered import Effect, Values
+from verifier.diagnosis.naming import kind_of, slip_of
+from verifier.diagnosis.parameters import Parameter
+from verifier.report.diagnosis import CandidateKind, DepartureAfter, FittedNumber
+from verifier.report.report import Interval, RegionMean, Standing
+from verifier.report.wording import listed, number, percent, quantity, span, suffix
+
+MOST: Final = 3
+"""So many names in a row, at most."""
+
+
+def with_doubt(value: float, interval: Interval, unit_scale: float) -> str:
+    """`0.46 ± 0.01`, rounded to the doubt; without it where there is no interval.
+
+    >>> with_doubt(0.45967, Interval(0.4496, 0.4697), 1.0)
+    '0.46 ± 0.01'
+    """
+    half = 0.5 * (interval.high - interval.low) / unit_scale
+    if not np.isfinite(half) or half <= 0.0:
+        return number(value / unit_scale)
+    digits = int(max(0, min(9, -np.floor(np.log10(half)))))
+    if half * 10.0**digits < 1.95:
+        digits = min(digits + 1, 9)
+    doubt = f"{half:.{digits}f}"
+    plain = f"{value / unit_scale:.{digits}f}"
+    return f"{_trimmed(plain, doubt)[0]} ± {_trimmed(plain, doubt)[1]}"
+
+
+def _trimmed(plain: str, doubt: str) -> tuple[str, str]:
+    """Without zeros that both end in behind the point."""
+    while "." in plain and plain[-1] == "0" and doubt[-1] == "0":
+        plain, doubt = plain[:-1].rstrip("."), doubt[:-1].rstrip(".")
+    return plain, doubt
+
+
+def of_parameter(parameter: Parameter, value: float, interval: Interval, *, moved: bool) -> str:
+    """`v1 is 0.46 ± 0.01 m/s (spec 0.5)`."""
+    unit = parameter.unit
+    found = f"{with_doubt(value, interval, unit.scale)}{suffix(unit)}"
+    spec = number(parameter.spec / unit.scale)
+    so = (
+        "" if moved else ", which agrees" if interval.low <= parameter.spec <= interval.high else ""
+    )
+    return f"{parameter.label} is {found} (spec {spec}{so})"
+
+
+def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ...]) -> str:
+    """What the robot or the log would have to be like."""
+    kind, names = kind_of(effect, values), listed(list(effect.applies_to))
+    found = [
+        f"{with_doubt(abs(n.value), n.interval, n.unit.scale)}{suffix(n.unit)}" for n in numbers
+    ]
+    subject = effect.label.partition(" of ")[2] or names
+    size = found[0] if found else ""
+    early = kind is CandidateKind.CLOCK_OFFSET and values[0] < 0.0
+    said = {
+        CandidateKind.DEAD_TIME: f"{subject} acts {size} later than the spec says",
+        CandidateKind.LATE_LOG: f"the log tells {names} {size} late",
+        CandidateKind.CLOCK_OFFSET: f"the clock of {subject} is {size} "
+        f"{'behind' if early else 'ahead of'} that of the other topics",
+        CandidateKind.LAG: f"{subject} acts through a first-order lag of {size}",
+        CandidateKind.SATURATION: f"{subject} saturates at {size}",
+        CandidateKind.DEAD_ZONE: f"{subject} has a dead zone of {size} to either side",
+        CandidateKind.SIGN: f"{names} has the wrong sign",
+        CandidateKind.SWAPPED_AXES: f"{names} are swapped",
+    }
+    if kind is CandidateKind.UNIT_SLIP:
+        return f"{names} looks like {slip_of(values[0])}"
+    return said[kind] if kind in said else of_scalar(effect, numbers[0])
+
+
+def of_scalar(effect: Effect, found: FittedNumber) -> str:
+    """A number of the spec, a gain or an offset."""
+    value = f"{with_doubt(found.value, found.interval, found.unit.scale)}{suffix(found.unit)}"
+    return f"{effect.label} is {value} (spec {number(found.neutral / found.unit.scale)})"
+
+
+def evidence(share: float, before: tuple[str, ...]) -> str:
+    """How much it explains of what was left."""
+    what = "what is left of the error" if before else "the error beyond noise"
+    return f"it explains {percent(max(share, 0.0))} of {what} in windows that it was not fitted to"
+
+
+def either(labels: list[str]) -> str:
+    """Explanations that are as good."""
+    shown = labels[:MOST]
+    more = f", or {len(labels) - MOST} others" if len(labels) > MOST else ""
+    return f"this trace can't tell it from {' or '.join(shown)}{more}"
+
+
+def still(after: DepartureAfter) -> str:
+    """A variable that still departs."""
+    left = quantity(after.after, after.unit)
+    allowed = quantity(after.tolerance, after.unit)
+    if after.standing is Standing.EXCEEDED:
+        return f"{after.name} still departs by {left} (allowed {allowed})"
+    return f"{after.name} then departs by {left} (allowed {allowed})"
+
+
+def where(name: str, region: RegionMean, units: dict[str, Unit]) -> str:
+    """`heading differs from 0.2 to 0.4 rad of heading`."""
+    parts = [f"{key} {span(*ends, units[key])}" for key, ends in region.bounds.items()]
+    return f"{name} still differs where {listed(parts)}" if parts else f"{name} still differs"
