@@ -115,9 +115,9 @@ def _number(
 
 
 def _manner(feature: ComparedFeature, *, is_seen: bool) -> str:
-    """How the robot's cycle was found, as a verb."""
+    """How the robot's cycle was found, as a clause that its numbers end."""
     if is_seen:
-        return f"makes {feature.visits} laps with a"
+        return f"the robot makes {feature.visits} laps with a"
     if feature.standing is FeatureStanding.NOT_VISITED:
-        return "does not make three laps of it"
-    return "by its refitted field, has one with a"
+        return "not visited: the robot does not make three laps of it in this trace"
+    return "the field refitted to the robot has one with a"

@@ -119,44 +119,56 @@ def _tree(scene: Scene, cycle: Cycle) -> tuple[KDTree, Array]:
 def _laps(scene: Scene, cycle: Cycle, stretch: Stretch, tree: KDTree, scale: Array) -> Laps:
     _, index = tree.query(_embedded(scene, stretch.values) / scale)
     phase = np.unwrap(index / PHASES, period=1.0)
-    sections = np.arange(SECTIONS) / SECTIONS
     whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1.0)
+    wanted = whole + (np.arange(SECTIONS) / SECTIONS)[:, None]
+    guesses = _guesses(stretch, phase, wanted.ravel())
     passages = np.array(
-        [[_passage(stretch, phase, lap + part, cycle.period) for lap in whole] for part in sections]
-    ).reshape(SECTIONS, len(whole))
-    starts = passages[0]
-    good = _is_lap(stretch, phase, starts, cycle.period)
+        [
+            _passage(stretch, phase, at, guess, cycle.period)
+            for at, guess in zip(wanted.ravel(), guesses, strict=True)
+        ]
+    ).reshape(wanted.shape)
+    good = _is_lap(stretch, phase, passages[0], cycle.period)
     first, last = _longest_run(good)
-    first += _unsettled(stretch, starts[first : last + 1])
-    return Laps(stretch, starts[first : last + 1], passages[:, first : last + 1])
+    first += _unsettled(stretch, passages[0, first : last + 1])
+    return Laps(stretch, passages[0, first : last + 1], passages[:, first : last + 1])
 
 
-def _passage(stretch: Stretch, phase: Array, at: float, period: float) -> float:
-    """When the unwound phase passes `at`; NaN where it does not, or too few samples tell."""
-    above = np.flatnonzero((phase[:-1] < at) & (phase[1:] >= at))
-    if len(above) == 0:
-        return np.nan
-    guess = float(np.median(stretch.times[above]))
+def _guesses(stretch: Stretch, phase: Array, wanted: Array) -> Array:
+    """Between when the phase is first at `wanted` (k,) and when it last is not."""
+    first = np.searchsorted(np.maximum.accumulate(phase), wanted)
+    last = np.searchsorted(np.minimum.accumulate(phase[::-1])[::-1], wanted)
+    end = len(stretch.times) - 1
+    return 0.5 * (stretch.times[np.minimum(first, end)] + stretch.times[np.minimum(last, end)])
+
+
+def _passage(stretch: Stretch, phase: Array, at: float, guess: float, period: float) -> float:
+    """When the unwound phase passes `at`; NaN where too few samples tell."""
+    reach = max(REACH * period, FEWEST * stretch.step)
     for _ in range(2):
-        reach = max(REACH * period, FEWEST * stretch.step)
         low, high = np.searchsorted(stretch.times, [guess - reach, guess + reach])
         times = stretch.times[low:high] - guess
         if len(times) < FEWEST or times[0] > 0.0 or times[-1] < 0.0:
             return np.nan
-        slope, level = np.polyfit(times, phase[low:high] - at, 1)
-        if slope <= 0.0 or abs(level / slope) > reach:
+        behind = at - phase[low:high]
+        middle = float(np.mean(times))
+        slope = -float(np.sum((times - middle) * behind) / np.sum((times - middle) ** 2))
+        if slope <= 0.0:
             return np.nan
-        guess -= level / slope
+        later = middle + float(np.mean(behind)) / slope
+        if abs(later) > reach:
+            return np.nan
+        guess += later
     return guess
 
 
 def _is_lap(stretch: Stretch, phase: Array, starts: Array, period: float) -> list[bool]:
     """Of each pair of successive starts, whether it bounds a lap without breaks."""
+    steps = np.append(0.0, np.abs(np.diff(phase)))
     good = []
     for first, last in pairwise(starts):
-        inside = (stretch.times >= first) & (stretch.times <= last)
-        steps = np.abs(np.diff(phase[inside]))
-        calm = len(steps) > 0 and float(np.max(steps)) < JUMP
+        low, high = np.searchsorted(stretch.times, [first, last])
+        calm = high > low and float(np.max(steps[low:high])) < JUMP
         good.append(calm and 1.0 / SLOWEST < (last - first) / period < SLOWEST)
     return good
 
@@ -179,8 +191,8 @@ def _unsettled(stretch: Stretch, starts: Array) -> int:
         return min(1, max(count - 1, 0))
     sizes = np.array(
         [
-            np.std(stretch.values[(stretch.times >= a) & (stretch.times < b)], axis=0)
-            for a, b in pairwise(starts)
+            np.std(stretch.values[slice(*np.searchsorted(stretch.times, ends))], axis=0)
+            for ends in pairwise(starts)
         ]
     )
     late = sizes[count // 2 :]

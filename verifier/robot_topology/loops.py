@@ -16,7 +16,7 @@ import numpy as np
 from runtime.arrays import Array, Integers
 from verifier.report.features import Estimate
 from verifier.robot_topology.intervals import student
-from verifier.robot_topology.laps import Laps, on_cycle
+from verifier.robot_topology.laps import FEWEST, Laps, on_cycle
 from verifier.robot_topology.swings import swing
 from verifier.topology.features import Cycle
 
@@ -28,6 +28,8 @@ PER_PHASE: Final = 6.0
 RESAMPLES: Final = 200
 MOST: Final = 20_000
 """So many samples are enough."""
+BLOCKS: Final = 60
+"""Of more laps, successive ones are taken together."""
 
 
 @final
@@ -58,7 +60,7 @@ def mean_lap(
     """The mean lap, None for fewer than three laps."""
     samples = _gathered(laps, cycle)
     count = int(samples.lap.max(initial=-1)) + 1
-    if count < 3:
+    if count < FEWEST:
         return None
     grid = np.arange(GRID) / GRID
     moments, of_robot = _moments(samples, samples.values, grid, count)
@@ -99,6 +101,7 @@ def _gathered(laps: tuple[Laps, ...], cycle: Cycle) -> Samples:
     every = slice(None, None, stride)
     joined = np.concatenate(values) if values else np.empty((0, cycle.points.shape[1]))
     which = np.concatenate(lap) if lap else np.empty(0, np.int64)
+    which = which * min(before, BLOCKS) // max(before, 1)
     return Samples(phase[every], joined[every], on_cycle(cycle, phase[every]), which[every])
 
 

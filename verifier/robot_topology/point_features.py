@@ -107,13 +107,13 @@ def _standing(
 
 
 def _manner(feature: ComparedFeature, near: RefittedPoint | None, rest: RestingPlace | None) -> str:
-    """How the robot's place was found, as a verb."""
+    """How the robot's place was found, as a clause that its coordinates end."""
     if rest is not None:
-        return f"rests {'once' if rest.visits == 1 else f'{rest.visits} times'} at"
+        return f"the robot rests {'once' if rest.visits == 1 else f'{rest.visits} times'} at"
     if near is None:
-        return "does not come near it"
+        return "not visited by the robot in this trace"
     if near.at is None:
-        return "goes past, but its refitted field has none near"
+        return "the robot goes past, but the field refitted to it has none near"
     if feature.standing is FeatureStanding.EXCEEDED and near.alike <= 1.0 - NEARLY_ALL:
-        return "by its refitted field, has one of another type at"
-    return "by its refitted field, has it at"
+        return "the field refitted to the robot has a point of another type, at"
+    return "the field refitted to the robot has it at"

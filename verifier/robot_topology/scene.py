@@ -20,6 +20,8 @@ from verifier.topology.scenes import Scenes
 
 SHORTEST: Final = 8
 """A stretch of fewer samples shows nothing."""
+MOST: Final = 100_000
+"""Of a longer trace every second, third, ... sample is looked at."""
 
 
 @final
@@ -104,7 +106,8 @@ def _base(needs: Needs) -> Array:
     first = max(float(series.times[0]) for series in needs.series)
     last = min(float(series.times[-1]) for series in needs.series)
     times = needs.series[needs.base].times
-    return np.asarray(times[(times >= first) & (times <= last)])
+    inside = times[(times >= first) & (times <= last)]
+    return np.asarray(inside[:: -(-len(inside) // MOST) or 1])
 
 
 def _stretches(

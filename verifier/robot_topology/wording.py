@@ -28,15 +28,18 @@ def estimate_words(estimate: Estimate, unit: Unit) -> str:
 
 
 def sentence_on(feature: ComparedFeature, manner: str) -> str:
-    """The sentence on a feature of the spec; `manner`: how the robot's was found, as a verb."""
+    """The sentence on a feature of the spec.
+
+    manner: how the robot's was found, as a clause that its numbers end: `the robot rests at`.
+    """
     head = f"{feature.name[:1].upper()}{feature.name[1:]}"
-    if feature.standing is FeatureStanding.NOT_VISITED:
-        return f"{head}: the robot {manner} in this trace."
+    if feature.claim:
+        head += f" ({feature.claim})"
     told = [number for number in feature.numbers if number.robot is not None]
     if not told:
-        return f"{head}: the robot {manner}."
+        return f"{head}: {manner}."
     robot = listed([_robot_words(number) for number in told])
-    return f"{head}: the robot {manner} {robot}; {_judgement(feature)}."
+    return f"{head}: {manner} {robot}; {_judgement(feature)}."
 
 
 def _robot_words(number: FeatureNumber) -> str:
@@ -49,6 +52,8 @@ def _judgement(feature: ComparedFeature) -> str:
     worst = [n for n in feature.numbers if n.standing is FeatureStanding.EXCEEDED]
     if worst:
         return listed([_excess(number) for number in worst])
+    if feature.standing is FeatureStanding.EXCEEDED:
+        return f"the spec's is a {feature.kind}"
     open_ = [n for n in feature.numbers if n.standing is FeatureStanding.UNDECIDED]
     if not open_ and feature.standing is FeatureStanding.WITHIN:
         return f"within {_allowed_by(feature.numbers)}"
@@ -62,10 +67,11 @@ def _judgement(feature: ComparedFeature) -> str:
 
 def _excess(number: FeatureNumber) -> str:
     assert number.robot is not None, "nothing unknown is exceeded"
+    off = quantity(abs(number.robot.value - number.spec), number.unit)
     allowed = quantity(number.tolerance, number.unit)
     return (
-        f"the spec has {number.name} {quantity(number.spec, number.unit)}, and"
-        f" {number.allowed_by} allows {allowed} more or less"
+        f"its {number.name} is {off} off the spec's {quantity(number.spec, number.unit)},"
+        f" where {number.allowed_by} allows {allowed}"
     )
 
 
