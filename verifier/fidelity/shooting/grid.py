@@ -6,7 +6,7 @@ switches exactly), and further instants that keep every step at or below a maxim
 they are the ticks of its clock.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import final
 
 import numpy as np
@@ -24,18 +24,22 @@ CLOCK_SLACK = 0.2
 class Grid:
     """Knots (G,) and the inputs' values from each knot to the next, (G, k).
 
-    columns (k,): the inputs' entries of the register.
+    columns (k,): the inputs' entries of the register. leaps: the knots at which a mode is left for
+    itself.
     """
 
     times: Array
     inputs: Array
     columns: Integers
+    leaps: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
 
 
 def flow_grid(needs: Needs, max_step: float) -> Grid:
     """The grid of a flow, with no step above `max_step` (s) but in gaps."""
     told = [each.series for each in needs.inputs if each.series is not None]
-    knots = np.unique(np.concatenate([s.times for s in (*needs.series, *told)]))
+    knots = np.unique(
+        np.concatenate([*(s.times for s in (*needs.series, *told)), needs.leaps.times])
+    )
     longest = max(GAP_SECONDS, GAP_PERIODS * period_of(needs.series[needs.base].times))
     return _grid(needs, _refined(knots, max_step, longest))
 
@@ -64,7 +68,7 @@ def moved_inputs(grid: Grid, needs: Needs, shifts: dict[str, Array]) -> Grid:
         if each.name in shifts and each.series is not None:
             at = np.searchsorted(each.series.times, grid.times, side="right") - 1
             inputs[:, column] += shifts[each.name][np.clip(at, 0, None)]
-    return Grid(grid.times, _within(inputs, needs), grid.columns)
+    return replace(grid, inputs=_within(inputs, needs))
 
 
 def _grid(needs: Needs, times: Array) -> Grid:
@@ -74,7 +78,8 @@ def _grid(needs: Needs, times: Array) -> Grid:
     ]
     inputs = np.stack(values, axis=-1) if values else np.empty((len(times), 0))
     columns = np.array([each.column for each in needs.inputs], dtype=np.int64)
-    return Grid(times, _within(inputs, needs), columns)
+    leaps = np.searchsorted(times, needs.leaps.times)
+    return Grid(times, _within(inputs, needs), columns, leaps)
 
 
 def _within(inputs: Array, needs: Needs) -> Array:

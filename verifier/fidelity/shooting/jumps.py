@@ -18,15 +18,22 @@ from verifier.fidelity.stretches.segments import on_circle
 
 
 def switch_knots(flow: Flow, grid: Grid) -> Integers:
-    """The knots from which another mode holds than before; none without modes."""
-    column = mode_column(flow.program, grid)
-    if column < 0:
-        return np.zeros(0, np.int64)
-    return np.flatnonzero(np.diff(grid.inputs[:, column]) != 0.0) + 1
+    """The knots from which another mode holds than before, or the same one anew."""
+    modes = modes_at(flow.program, grid)
+    return np.union1d(np.flatnonzero(np.diff(modes) != 0.0) + 1, grid.leaps)
+
+
+def modes_at(program: Program, grid: Grid) -> Array:
+    """The mode (G,) that holds from each knot on; that at rest where no input tells it."""
+    column = mode_column(program, grid)
+    if column >= 0:
+        return np.asarray(grid.inputs[:, column])
+    rest = next((s.hold for s in program.states if s.name == program.field.mode), 0.0)
+    return np.full(len(grid.times), rest)
 
 
 def mode_column(program: Program, grid: Grid) -> int:
-    """Which of the grid's inputs is the mode; -1 without modes."""
+    """Which of the grid's inputs is the mode; -1 where none tells it."""
     names = [program.register[column] for column in grid.columns]
     return names.index(program.field.mode) if program.field.mode in names else -1
 
@@ -37,8 +44,8 @@ def jumped(flow: Flow, grid: Grid, states: Array, knots: Integers) -> Array:
     Of several guards between the same two modes, that one counts which is nearest to opening, or
     furthest open. Where the spec has none, nothing jumps.
     """
-    column = mode_column(flow.program, grid)
-    left, entered = grid.inputs[knots - 1, column], grid.inputs[knots, column]
+    modes = modes_at(flow.program, grid)
+    left, entered = modes[knots - 1], modes[knots]
     after = np.array(states)
     for way in sorted(set(zip(left, entered, strict=True))):
         here = (left == way[0]) & (entered == way[1])

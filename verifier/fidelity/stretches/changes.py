@@ -47,13 +47,30 @@ class Changes:
         return self.times + self.doubt / 2.0
 
 
+def no_changes() -> Changes:
+    """None at all."""
+    return Changes(np.zeros(0), np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64))
+
+
+def merged(first: Changes, second: Changes) -> Changes:
+    """All changes of both, in order of time."""
+    times = np.concatenate([first.times, second.times])
+    order = np.argsort(times, kind="stable")
+    return Changes(
+        times=times[order],
+        doubt=np.concatenate([first.doubt, second.doubt])[order],
+        left=np.concatenate([first.left, second.left])[order],
+        entered=np.concatenate([first.entered, second.entered])[order],
+    )
+
+
 def changes_in(series: Series | None) -> Changes:
     """The changes of a mode, from a series whose changes stand in the middle of their doubt.
 
     None where the mode is not in the trace.
     """
     if series is None:
-        return Changes(np.zeros(0), np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64))
+        return no_changes()
     found = _differing(series)
     doubt = np.zeros(len(series.times))
     stamped = _stamped(series)

@@ -13,7 +13,8 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.code import Code
 from runtime.program import Control, Kind, Program, State
-from verifier.fidelity.stretches.changes import halved
+from verifier.fidelity.stretches.changes import Changes, changes_in, halved, merged, no_changes
+from verifier.fidelity.stretches.leaps import leaps_in
 from verifier.traces.trace import Series, Trace
 
 
@@ -45,6 +46,7 @@ class Needs:
 
     columns: where each predicted state stands in the state vector. A signal's `column` is -1.
     missing: predicted states that the trace does not hold.
+    leaps: switches of a mode to itself, told by the jumps of states.
     """
 
     columns: tuple[int, ...]
@@ -53,6 +55,7 @@ class Needs:
     inputs: tuple[Input, ...]
     signals: tuple[Input, ...]
     missing: tuple[str, ...]
+    leaps: Changes
 
     @property
     def base(self) -> int:
@@ -74,14 +77,16 @@ def needs_of(program: Program, trace: Trace) -> Needs:
         if state.is_driven and state.kind is not Kind.DISCRETE
     ]
     present = [(c, s) for c, s in predicted if _series(trace, s.name) is not None]
-    return Needs(
+    needs = Needs(
         columns=tuple(column for column, _ in present),
         driven=tuple(state for _, state in present),
         series=tuple(trace.series[state.name] for _, state in present),
         inputs=_inputs(program, trace, {column for column, _ in predicted}),
         signals=_signals(program, trace),
         missing=tuple(s.name for _, s in predicted if _series(trace, s.name) is None),
+        leaps=no_changes(),
     )
+    return replace(needs, leaps=_leaps(program, needs))
 
 
 def parts_of(program: Program) -> dict[str, State | Control]:
@@ -106,6 +111,12 @@ def names_guarded(program: Program) -> set[str]:
     return _tokens((*(guard.condition for guard in guards), *resets))
 
 
+def changes_of(program: Program, needs: Needs) -> Changes:
+    """All switches: changes of the measured mode, and those of a mode to itself."""
+    mode = mode_of(program, needs)
+    return merged(changes_in(None if mode is None else mode.series), needs.leaps)
+
+
 def mode_of(program: Program, needs: Needs) -> Input | None:
     """The input that tells the mode; None where there are no modes."""
     return next((each for each in needs.inputs if each.name == program.field.mode), None)
@@ -120,6 +131,25 @@ def held(series: Series, times: Array) -> Array:
 def period_of(times: Array) -> float:
     """The median distance of samples; infinite for fewer than two."""
     return float(np.median(np.diff(times))) if len(times) > 1 else np.inf
+
+
+def _leaps(program: Program, needs: Needs) -> Changes:
+    """The switches of a mode to itself, each in the middle of two samples of the time base."""
+    if needs.missing or not any(guard.mode == guard.target for guard in program.field.guards):
+        return no_changes()
+    times = needs.series[needs.base].times
+    register = {state.name: np.full(len(times), state.hold) for state in program.states}
+    register |= {each.name: np.full(len(times), each.default) for each in program.controls}
+    for state, series in zip(needs.driven, needs.series, strict=True):
+        register[state.name] = np.interp(times, series.times, series.values)
+    for each in needs.inputs:
+        known = np.full(len(times), each.value)
+        register[each.name] = known if each.series is None else held(each.series, times)
+    values = np.stack(list(register.values()), axis=-1)
+    count = len(program.states)
+    steps, modes = leaps_in(program, times, values[:, :count], values[:, count:])
+    doubt = times[steps + 1] - times[steps]
+    return Changes(times[steps] + doubt / 2.0, doubt, modes, modes)
 
 
 def _series(trace: Trace, name: str) -> Series | None:

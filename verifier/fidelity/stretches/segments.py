@@ -16,8 +16,7 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
-from verifier.fidelity.stretches.changes import changes_in
-from verifier.fidelity.stretches.needs import Needs, held, mode_of, parts_of, period_of
+from verifier.fidelity.stretches.needs import Needs, changes_of, held, parts_of, period_of
 from verifier.fidelity.stretches.spans import contains, intersect, length, spans_of, without
 from verifier.report.report import Exclusion
 from verifier.traces.trace import Series
@@ -106,8 +105,7 @@ def _switches(
 
     That is at least the sample period of the time base before it.
     """
-    mode = mode_of(program, needs)
-    changes = changes_in(None if mode is None else mode.series)
+    changes = changes_of(program, needs)
     if len(changes) == 0:
         return []
     ends = np.concatenate([[whole[0, 0]], changes.times, [whole[-1, 1]]])

@@ -40,7 +40,7 @@ def switching_of(program: Program, needs: Needs, fidelity: Fidelity) -> Switchin
     if not program.field.guards:
         return None
     mode = mode_of(program, needs)
-    if mode is None or not mode.is_known:
+    if mode is not None and not mode.is_known:
         reason, advice = sentences.not_logged(program)
         return Switching(program.field.mode, (), (), Standing.UNDECIDED, (reason,), (advice,))
     setting = setting_of(program, needs, fidelity)

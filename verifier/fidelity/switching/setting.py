@@ -13,12 +13,12 @@ from runtime.flow import Flow, flow_of, in_one_mode
 from runtime.integrators import rk4
 from runtime.program import Fidelity, Guard, Program
 from verifier.fidelity.shooting.grid import Grid, flow_grid
-from verifier.fidelity.shooting.jumps import mode_column
+from verifier.fidelity.shooting.jumps import mode_column, modes_at
 from verifier.fidelity.shooting.noise import noise_of
 from verifier.fidelity.shooting.prediction import Model
 from verifier.fidelity.shooting.samples import Samples, samples_of
-from verifier.fidelity.stretches.changes import Changes, changes_in
-from verifier.fidelity.stretches.needs import Needs, mode_of, period_of
+from verifier.fidelity.stretches.changes import Changes
+from verifier.fidelity.stretches.needs import Needs, changes_of, period_of
 from verifier.fidelity.stretches.segments import spans_between_exclusions
 from verifier.fidelity.stretches.spans import without
 
@@ -66,8 +66,7 @@ class Setting:
     @property
     def only_mode(self) -> int:
         """The mode of a trace without changes."""
-        grid = self.model.grid
-        return int(np.rint(grid.inputs[0, mode_column(self.program, grid)]))
+        return int(np.rint(modes_at(self.program, self.model.grid)[0]))
 
     @property
     def mode_names(self) -> tuple[str, ...]:
@@ -86,8 +85,7 @@ def setting_of(program: Program, needs: Needs, fidelity: Fidelity) -> Setting:
     grid = flow_grid(needs, fidelity.horizon / STEPS)
     flow = flow_of(program)
     samples = samples_of(needs, grid, 0.0)
-    mode = mode_of(program, needs)
-    changes = changes_in(None if mode is None else mode.series)
+    changes = changes_of(program, needs)
     spans = spans_between_exclusions(program, needs)
     quiet = without(spans, np.column_stack([changes.since, changes.until]))
     noise = noise_of(Model(in_one_mode(flow), grid), samples, quiet)
@@ -120,7 +118,9 @@ def inputs_at(setting: Setting, knots: Integers, modes: Array) -> Array:
     """The inputs (B, S, k) that hold from `knots` (B, S) on, with the mode (B,) put in."""
     grid = setting.model.grid
     inputs = np.array(grid.inputs[knots])
-    inputs[..., mode_column(setting.program, grid)] = modes[:, np.newaxis]
+    column = mode_column(setting.program, grid)
+    if column >= 0:
+        inputs[..., column] = modes[:, np.newaxis]
     return inputs
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runtime.arrays import Array
 from runtime.program import Program
 from verifier.fidelity.stretches.changes import changes_in
 from verifier.fidelity.stretches.needs import Input, Needs
@@ -36,14 +37,15 @@ def with_switching(report: Report, switching: Switching, needs: Needs) -> Report
 
 def with_told_times(program: Program, needs: Needs, switching: Switching) -> Needs:
     """The needs, with the mode changing when the states tell that it did."""
-    times = [s.time for s in switching.switches if s.sort is not SwitchSort.MISSED]
-    return replace(
-        needs, inputs=tuple(_told_times(each, program.field.mode, times) for each in needs.inputs)
-    )
+    found = [s for s in switching.switches if s.sort is not SwitchSort.MISSED]
+    changed = np.array([s.time for s in found if s.source != s.target])
+    leaped = np.array([s.time for s in found if s.source == s.target])
+    inputs = tuple(_told_times(each, program.field.mode, changed) for each in needs.inputs)
+    return replace(needs, inputs=inputs, leaps=replace(needs.leaps, times=leaped))
 
 
-def _told_times(given: Input, mode: str, times: list[float]) -> Input:
-    if given.name != mode or given.series is None or not times:
+def _told_times(given: Input, mode: str, times: Array) -> Input:
+    if given.name != mode or given.series is None or len(times) == 0:
         return given
     changes, series = changes_in(given.series), given.series
     moved = np.array(series.times)
