@@ -10,10 +10,10 @@ from compiler.declare import Declarations
 from compiler.sketch.design import Design, Family, Node, Region, Ridge, Ring
 from compiler.sketch.drawing import Drawing, Orbit, Point
 from compiler.sketch.frame import Frame, SketchRefusedError, frame_of
-from compiler.sketch.index import SWAPPED, Border, Item, Sort, completed, index_of
+from compiler.sketch.index import SWAPPED, Border, Ground, Item, Sort, completed, index_of
 from compiler.sketch.loops import Loop, loops_of
-from compiler.sketch.polygons import encloses, sees_all, viewpoint
-from compiler.sketch.refusals import refuse_coincidences, refuse_outside
+from compiler.sketch.polygons import distance_along, encloses, sees_all, viewpoint
+from compiler.sketch.refusals import refuse_coincidences, refuse_flat_directions, refuse_outside
 from compiler.sketch.separatrices import ridge_of
 from runtime.arrays import Array
 from spec_schema.expressions.tree import Expr
@@ -31,10 +31,11 @@ def compose(drawing: Drawing, declared: Declarations) -> Design:
     """
     frame = frame_of(drawing, declared)
     refuse_outside(drawing, frame, declared)
+    refuse_flat_directions(drawing, frame, declared)
     loops = loops_of(drawing, frame)
     nodes = [Node(point, frame.spot(point.at)) for point in drawing.points]
-    ridges = [ridge_of(line, frame) for line in drawing.lines]
-    refuse_coincidences(nodes, ridges, loops, frame)
+    ridges = [ridge_of(line, drawing, frame) for line in drawing.lines]
+    refuse_coincidences(nodes, ridges, loops, frame, declared)
     builder = _Builder(frame, tuple(loops), tuple(nodes), tuple(ridges))
     return Design(drawing, frame, builder.region(-1, None), drawing.arrows)
 
@@ -54,6 +55,11 @@ class _Builder:
         around = [i for i, loop in enumerate(self.loops) if encloses(loop.vertices, at)]
         return next((i for i in around if not any(self.loops[j].parent == i for j in around)), -1)
 
+    def room(self, at: Array, way: Array) -> float:
+        """How far the nearest orbit is from a place in a direction; inf where none is."""
+        far = [distance_along(loop.vertices, at, way) for loop in self.loops]
+        return min(far, default=np.inf)
+
     def region(self, owner: int, border: Border | None) -> Region:
         """What stands right inside loop `owner`, completed for a border that is crossed so."""
         nodes = tuple(n for n in self.nodes if self.owner(n.spot.at) == owner)
@@ -66,8 +72,9 @@ class _Builder:
             border = _free_border(items)
         if border is None:
             return Region(nodes, ridges, families, None)
-        found = completed(items, border, self.frame.half)
-        if not found:
+        found = completed(items, border, Ground(self.frame.half, self.room))
+        astray = [item for item in found if item.why and self.owner(item.at) != owner]
+        if not found or astray:
             raise _incomplete(items, self._path(owner, items), border)
         rate = _pace(nodes, ridges, families)
         return Region(_finished(nodes, found, rate, self.frame), ridges, families, border)
@@ -227,10 +234,14 @@ def _incomplete(items: Sequence[Item], path: Path, border: Border) -> SketchRefu
     entered = "entered" if border == "inward" else "left"
     message = (
         f"a region that is {entered} on all sides holds features that count +1 in all "
-        f"(attractors, repellers and orbits +1, saddles -1); these count {index_of(items):+d}, and "
-        "no way was found to complete them"
+        f"(attractors, repellers and orbits +1, saddles -1); these count "
+        f"{_signed(index_of(items))}, and no way was found to complete them"
     )
     return SketchRefusedError("S267", path, message, "draw the missing attractors and repellers")
+
+
+def _signed(count: int) -> str:
+    return f"{count:+d}" if count else "0"
 
 
 def _not_star_shaped(orbit: Orbit, held: Sequence[Node]) -> SketchRefusedError:

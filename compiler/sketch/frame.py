@@ -15,9 +15,11 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.sketch.algebra import minus, over, plus, scaled, with_constants
 from compiler.sketch.drawing import Drawing, Pair
+from compiler.sketch.witness import at_setting
 from runtime.arrays import Array
 from spec_schema.expressions.bounds import bounds
 from spec_schema.expressions.evaluate import evaluate
+from spec_schema.expressions.printers.text import to_text
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.expressions.tree import Expr, Number
 from spec_schema.places import Path
@@ -83,7 +85,7 @@ class Frame:
 
     def spot(self, place: Pair) -> Spot:
         """A place of the plane in the frame."""
-        return self._spot((self._inside(place[0], 0), self._inside(place[1], 1)))
+        return self._spot((self.inside(place[0], 0), self.inside(place[1], 1)))
 
     def vector(self, direction: Pair) -> Spot:
         """A vector of the plane in the frame."""
@@ -101,15 +103,16 @@ class Frame:
         )
         return first, second
 
-    def _inside(self, expr: Expr, axis: int) -> Expr:
+    def inside(self, expr: Expr, axis: int) -> Expr:
+        """A coordinate of the plane in the frame."""
         return over(minus(with_constants(expr, self.constants), self.middle[axis]), self.half[axis])
 
     def _spot(self, exprs: Pair) -> Spot:
         at = np.array([evaluate(expr, self.samples[0]) for expr in exprs])
-        found = {name for expr in exprs for name in self._moves_with(expr)}
+        found = {name for expr in exprs for name in self.moves_with(expr)}
         return Spot(exprs, tuple(name for name in self.box if name in found), at)
 
-    def _moves_with(self, expr: Expr) -> list[str]:
+    def moves_with(self, expr: Expr) -> list[str]:
         """The controls that the value really depends on: (x1 - x2) / (x1 - x2) has none."""
         return [
             name
@@ -185,20 +188,24 @@ def _axis(
     state = declared.variable(drawing.over[axis])
     if not np.isfinite(values).all():
         k = int(np.argmin(np.isfinite(values).all(axis=0)))
-        message = "this place is not finite all over the controls' domains"
+        bad = samples[int(np.argmin(np.isfinite(values[:, k])))]
+        message = f"this place is not finite{at_setting([spots[k][1]], bad, declared)}"
         raise SketchRefusedError("S264", spots[k][0], message, "shrink the domain of a control")
     if np.ptp(values, axis=1).max() < SAME * (state.high - state.low):
         return spots[0][1], Number((state.high - state.low) / 4)
     low, high = int(values[0].argmin()), int(values[0].argmax())
     half = scaled(0.5, minus(spots[high][1], spots[low][1]))
     corners = [dict(zip(box, ends, strict=True)) for ends in product(*box.values())]
-    narrowest = min(evaluate(half, setting) for setting in (*samples, *corners))
-    if not bounds(half, box)[0] > 0.0 and narrowest <= SAME * (state.high - state.low):
+    narrowest = min((*samples, *corners), key=lambda setting: evaluate(half, setting))
+    least = SAME * (state.high - state.low)
+    if not bounds(half, box)[0] > 0.0 and evaluate(half, narrowest) <= least:
+        ends = [drawing.spots[k][1][axis] for k in (low, high)]
         message = (
-            f"the sketch has no width along '{state.name}' for some controls: this place and that "
-            f"at {_short(spots[low][0])} meet"
+            f"the sketch has no width along '{state.name}'"
+            f"{at_setting(ends, narrowest, declared)}: its lowest and its highest place, "
+            f"{' and '.join(to_text(end) for end in ends)}, meet or change places there"
         )
-        remedy = "keep the domains of the controls apart, so that their places never meet"
+        remedy = "shrink the domain of a control, so that they never meet"
         raise SketchRefusedError("S264", spots[high][0], message, remedy)
     return scaled(0.5, plus(spots[high][1], spots[low][1])), half
 
@@ -216,10 +223,6 @@ def _like(drawing: Drawing, declared: Declarations, first: Expr, second: Expr) -
         widest = Number(max(one.value, two.value))
         return widest, widest
     return one, two
-
-
-def _short(path: Path) -> str:
-    return ".".join(str(step) for step in path[2:])
 
 
 def _reach(

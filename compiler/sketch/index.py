@@ -6,7 +6,7 @@ all along the border of a region, what it holds counts +1 in all. A region that 
 sides needs an attractor; one that is left to all sides, a repeller.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Final, Literal, TypeAlias, final
@@ -28,6 +28,8 @@ SWAPPED: Final[dict[Sort, Sort]] = {
 """What each is when time runs backwards."""
 ASIDE: Final = 0.35
 """A join closer to a repeller than this share of its length goes round it."""
+HALFWAY: Final = 0.5
+"""How far at most what is added goes, of the way to the next orbit."""
 CONE: Final = 0.3
 """Cosine of the widest angle between a saddle's way and what it leads to."""
 
@@ -52,26 +54,37 @@ class Item:
     why: str = ""
 
 
+@final
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """Where features are added. half: the half widths of the frame.
+
+    room: how far the nearest orbit is from a place (2,) in a direction (2,); inf where none is.
+    """
+
+    half: Pair
+    room: Callable[[Array, Array], float]
+
+
 def index_of(items: Sequence[Item]) -> int:
     """What the features count in all."""
     return sum(-1 if item.sort == "saddle" else 1 for item in items)
 
 
-def completed(items: Sequence[Item], border: Border, half: Pair) -> tuple[Item, ...]:
+def completed(items: Sequence[Item], border: Border, ground: Ground) -> tuple[Item, ...]:
     """The items with the fewest that index theory asks for beside them, for a border all one way.
 
-    Saddles whose way out is open get one. half: the half widths of the frame. An empty tuple where
-    no way was found.
+    Saddles whose way out is open get one. An empty tuple where no way was found.
     """
     if border == "outward":
         backwards = tuple(_backwards(item) for item in items)
-        return tuple(_backwards(item) for item in completed(backwards, "inward", half))
+        return tuple(_backwards(item) for item in completed(backwards, "inward", ground))
     found = _with_ends(tuple(items))
     for _ in range(2 * len(found) + 4):
         lacking = index_of(found) - 1
         if lacking == 0 and any(item.sort == "attractor" for item in found):
             return _with_ends(found)
-        extra = _saddle(found, half) if lacking > 0 else _goal(found, half)
+        extra = _saddle(found, ground) if lacking > 0 else _goal(found, ground)
         if extra is None:
             return ()
         found = (*found, extra)
@@ -110,15 +123,15 @@ def _apart(first: Item, second: Item) -> float:
     return float(np.linalg.norm(first.at - second.at))
 
 
-def _saddle(items: tuple[Item, ...], half: Pair) -> Item | None:
+def _saddle(items: tuple[Item, ...], ground: Ground) -> Item | None:
     """A saddle between two attractors that nothing joins yet, else one beside a repeller."""
     goals = _of("attractor", items)
     joined = _joins(items)
     for first, second in sorted(combinations(goals, 2), key=lambda pair: _apart(*pair)):
         if not _connected(first, second, joined):
-            return _between(first, second, items, half)
+            return _between(first, second, items, ground)
     sources = sorted(_of("repeller", items), key=lambda source: -_free(source, items)[0])
-    return _beside(sources[0], items, half) if sources and goals else None
+    return _beside(sources[0], items, ground) if sources and goals else None
 
 
 def _joins(items: tuple[Item, ...]) -> tuple[tuple[Item, Item], ...]:
@@ -143,13 +156,13 @@ def _connected(first: Item, second: Item, joins: Sequence[tuple[Item, Item]]) ->
     return id(second) in reached
 
 
-def _between(first: Item, second: Item, items: tuple[Item, ...], half: Pair) -> Item:
+def _between(first: Item, second: Item, items: tuple[Item, ...], ground: Ground) -> Item:
     """A saddle halfway between two attractors, or aside where a repeller is in the way."""
     place, at = between(first.place, second.place, 0.5), (first.at + second.at) / 2
     length = _apart(first, second)
     for source in _of("repeller", items):
         if np.linalg.norm(source.at - at) < ASIDE * length:
-            return _beside(source, items, half)
+            return _beside(source, items, ground)
     why = f"'{first.name}' and '{second.name}' draw apart what starts between them"
     name = f"saddle between {first.name} and {second.name}"
     return Item("saddle", name, at, place, ends=(first.place, second.place), why=why)
@@ -166,11 +179,11 @@ def _free(source: Item, items: Sequence[Item]) -> tuple[float, Array]:
     return nearest, ways[int(np.argmin(crowd))]
 
 
-def _beside(source: Item, items: Sequence[Item], half: Pair) -> Item:
+def _beside(source: Item, items: Sequence[Item], ground: Ground) -> Item:
     """A saddle beside a repeller, where what it sends out meets what comes from the border."""
     nearest, way = _free(source, items)
-    step = 0.8 * nearest * way
-    place = _shifted(source, step, half)
+    step = min(0.8 * nearest, HALFWAY * ground.room(source.at, way)) * way
+    place = _shifted(source, step, ground.half)
     why = f"what '{source.name}' sends out meets what comes from the border"
     found = Item("saddle", f"saddle beside {source.name}", source.at + step, place, why=why)
     return replace(found, ends=(source.place, place), inward=True)
@@ -185,7 +198,7 @@ def _shifted(origin: Item, step: Array, half: Pair) -> Pair:
     return first, second
 
 
-def _goal(items: tuple[Item, ...], half: Pair) -> Item | None:
+def _goal(items: tuple[Item, ...], ground: Ground) -> Item | None:
     """An attractor at the end of a saddle's way out that leads nowhere yet."""
     goals = _of("attractor", items)
     for saddle in _of("saddle", items):
@@ -193,10 +206,13 @@ def _goal(items: tuple[Item, ...], half: Pair) -> Item | None:
             reached = [g for g in goals if _cosine(g.at - saddle.at, way) > CONE]
             if not reached:
                 others = [_apart(o, saddle) for o in items if o is not saddle]
-                step = min(others, default=1.0) * way
-                why = f"the way out of '{saddle.name}' must lead somewhere"
-                name = f"attractor beyond {saddle.name}"
-                place = _shifted(saddle, step, half)
+                free = min(others, default=1.0)
+                step = min(free, HALFWAY * ground.room(saddle.at, way)) * way
+                why = f"the way through '{saddle.name}' must end somewhere on either side"
+                name = f"point beyond {saddle.name}"
+                if any(item.name == name for item in items):
+                    name += ", on the other side"
+                place = _shifted(saddle, step, ground.half)
                 return Item("attractor", name, saddle.at + step, place, why=why)
     return None
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from compiler.sketch.drawing import Drawing, Orbit
 from compiler.sketch.frame import Frame, SketchRefusedError
-from compiler.sketch.polygons import cross_each_other, crosses_itself, encloses
+from compiler.sketch.moving import refuse_moving
+from compiler.sketch.polygons import cross_each_other, crosses_itself, encloses, repeated
 from runtime.arrays import Array
 
 
@@ -28,11 +29,15 @@ def loops_of(drawing: Drawing, frame: Frame) -> list[Loop]:
     Raises:
         SketchRefusedError: one crosses itself or another, or changes its shape with the controls.
     """
-    curves = [_still(orbit, frame) for orbit in drawing.orbits]
+    curves = [_still(orbit, drawing, frame) for orbit in drawing.orbits]
     for orbit, curve in zip(drawing.orbits, curves, strict=True):
+        again = repeated(curve)
+        if again is not None:
+            raise _repeated(orbit, curve, again)
         if crosses_itself(curve):
             message = f"'{orbit.name}' crosses itself, and a trajectory never does"
-            raise SketchRefusedError("S266", orbit.path, message, "sort its vertices")
+            remedy = "write its vertices in the order in which they are passed"
+            raise SketchRefusedError("S266", orbit.path, message, remedy)
     for i, first in enumerate(curves):
         for j in range(i):
             if cross_each_other(first, curves[j]):
@@ -46,24 +51,26 @@ def loops_of(drawing: Drawing, frame: Frame) -> list[Loop]:
     ]
 
 
+def _repeated(orbit: Orbit, curve: Array, again: int) -> SketchRefusedError:
+    """The error about a vertex that stands twice."""
+    first = next(i for i in range(again) if np.allclose(curve[i], curve[again], atol=1e-9))
+    closes = first == 0 and again == len(curve) - 1
+    why = ": an orbit closes by itself" if closes else ""
+    message = f"'{orbit.name}' has this vertex twice: it repeats number {first + 1}{why}"
+    path = (*orbit.path, "through", again)
+    return SketchRefusedError("S266", path, message, "remove one of them")
+
+
 def _parent(i: int, curves: Sequence[Array]) -> int:
     around = [j for j, curve in enumerate(curves) if j != i and encloses(curve, curves[i][0])]
     depth = {j: sum(encloses(other, curves[j][0]) for other in curves) for j in around}
     return max(around, key=lambda j: depth[j], default=-1)
 
 
-def _still(orbit: Orbit, frame: Frame) -> Array:
+def _still(orbit: Orbit, drawing: Drawing, frame: Frame) -> Array:
     """The vertices (V, 2) of an orbit, whose shape must not depend on the controls."""
-    spots = [frame.spot(pair) for pair in orbit.through]
-    for i, spot in enumerate(spots):
-        if spot.controls:
-            message = (
-                f"the shape of '{orbit.name}' changes with {', '.join(spot.controls)}: its box "
-                "moves and stretches with the controls, and this vertex does not go along"
-            )
-            remedy = (
-                "place it at a fixed share between the outermost places of the sketch: "
-                "`x2 + 0.3*(x1 - x2)`"
-            )
-            raise SketchRefusedError("S265", (*orbit.path, "through", i), message, remedy)
-    return np.stack([spot.at for spot in spots])
+    for i, pair in enumerate(orbit.through):
+        refuse_moving(
+            f"this vertex of '{orbit.name}'", pair, (*orbit.path, "through", i), drawing, frame
+        )
+    return np.stack([frame.spot(pair).at for pair in orbit.through])

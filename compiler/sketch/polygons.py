@@ -9,6 +9,8 @@ import numpy as np
 
 from runtime.arrays import Array
 
+MEETING: Final = 1e-9
+"""Vertices closer than this are one."""
 LATTICE: Final = 41
 """Points per axis among which a place that sees a whole curve is sought."""
 
@@ -41,6 +43,26 @@ def distance_to_line(points: Array, point: Array) -> float:
     along = np.sum((point - points[:-1]) * edges, axis=-1) / np.sum(edges * edges, axis=-1)
     nearest = points[:-1] + np.clip(along, 0.0, 1.0)[:, np.newaxis] * edges
     return float(np.min(np.linalg.norm(nearest - point, axis=-1)))
+
+
+def distance_along(vertices: Array, point: Array, way: Array) -> float:
+    """How far (in lengths of `way`) the curve is first met from a point; inf where it is not."""
+    edges = np.roll(vertices, -1, axis=0) - vertices
+    start = vertices - point
+    turn = _cross(way, edges)
+    meets = turn != 0.0
+    safe = np.where(meets, turn, 1.0)
+    far, share = _cross(start, edges) / safe, _cross(start, way) / safe
+    met = far[meets & (far > 0.0) & (share >= 0.0) & (share <= 1.0)]
+    return float(met.min(initial=np.inf))
+
+
+def repeated(vertices: Array) -> int | None:
+    """The first vertex at which the curve passes through an earlier one again; None: none does."""
+    for i, vertex in enumerate(vertices):
+        if np.any(np.linalg.norm(vertices[:i] - vertex, axis=-1) < MEETING):
+            return i
+    return None
 
 
 def crosses_itself(vertices: Array) -> bool:

@@ -5,9 +5,10 @@ from typing import Final
 import numpy as np
 
 from compiler.sketch.design import Ridge
-from compiler.sketch.drawing import Line, Pair
+from compiler.sketch.drawing import Drawing, Line, Pair
 from compiler.sketch.frame import SAME, Frame, SketchRefusedError, spelled
 from compiler.sketch.graphs import graph_through
+from compiler.sketch.moving import refuse_moving
 from compiler.sketch.polygons import distance_to_line
 from runtime.arrays import Array
 from spec_schema.expressions.evaluate import evaluate
@@ -16,18 +17,16 @@ BESIDE: Final = 0.05
 """Half widths of the frame: a saddle that is farther off its line is not on it."""
 
 
-def ridge_of(line: Line, frame: Frame) -> Ridge:
+def ridge_of(line: Line, drawing: Drawing, frame: Frame) -> Ridge:
     """The separatrix in its frame.
 
     Raises:
         SketchRefusedError: it turns back or changes its shape, or its saddle is not on it.
     """
-    spots = [frame.spot(pair) for pair in line.through]
-    through = np.stack([spot.at for spot in spots])
-    if any(spot.controls for spot in spots):
-        message = f"the shape of '{line.name}' changes with the controls"
-        remedy = "place its points at fixed shares between the outermost places of the sketch"
-        raise SketchRefusedError("S265", line.path, message, remedy)
+    for i, pair in enumerate(line.through):
+        what = f"this place of '{line.name}'"
+        refuse_moving(what, pair, (*line.path, "through", i), drawing, frame)
+    through = np.stack([frame.spot(pair).at for pair in line.through])
     if not np.all(np.diff(through @ (through[-1] - through[0])) > 0.0):
         message = f"'{line.name}' turns back on its way from its first point to its last"
         remedy = "let its points advance from one end to the other"
@@ -35,6 +34,9 @@ def ridge_of(line: Line, frame: Frame) -> Ridge:
     if line.saddle is None:
         saddle = _on_polyline(through, (through[0] + through[-1]) / 2)
         return Ridge(line, through, saddle)
+    refuse_moving(
+        f"the saddle of '{line.name}'", line.saddle, (*line.path, "saddle"), drawing, frame
+    )
     saddle = _saddle_on(line, line.saddle, through, frame)
     return Ridge(line, through, _on_polyline(through, saddle))
 
@@ -42,10 +44,6 @@ def ridge_of(line: Line, frame: Frame) -> Ridge:
 def _saddle_on(line: Line, drawn: Pair, through: Array, frame: Frame) -> Array:
     """The saddle that was drawn on a line; refused where it is not on it."""
     spot, path = frame.spot(drawn), (*line.path, "saddle")
-    if spot.controls:
-        message = f"the saddle of '{line.name}' moves along the line with the controls"
-        remedy = "place it at a fixed share between the outermost places of the sketch"
-        raise SketchRefusedError("S265", path, message, remedy)
     near = graph_through(through).nearest(_on_polyline(through, spot.at))
     off = min(float(np.linalg.norm(spot.at - near)), distance_to_line(through, spot.at))
     if off > BESIDE:

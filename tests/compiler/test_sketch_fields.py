@@ -8,14 +8,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from compiler.check import check, check_behavior
 from compiler.compile import compile_file, compile_loaded
 from compiler.sketch.graphs import graph_through
-from compiler.sketch.index import Item, completed, index_of
+from compiler.sketch.index import Ground, Item, completed, index_of
 from compiler.sketch.pacing import timed_paces
+from compiler.sketch.polygons import encloses
 from compiler.sketch.ridges import ridge_through
 from runtime.flow import flow_of, rates
 from runtime.integrators import adaptive
 from runtime.program import Program
+from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
 from spec_schema.expressions.tree import Number
 from spec_schema.load import load_source
@@ -222,8 +225,50 @@ def test_attractors_are_completed_to_index_one_by_one_saddle_fewer(
         for i, at in enumerate(places)
     ]
 
-    found = completed(items, "inward", (HALF, HALF))
+    found = completed(items, "inward", Ground((HALF, HALF), lambda _at, _way: np.inf))
 
     assert index_of(found) == 1
     assert sum(item.sort == "saddle" for item in found) == len(places) - 1
     assert all(item.why for item in found if item.sort == "saddle")
+
+
+def test_what_is_added_for_a_saddle_inside_an_orbit_stands_inside_too() -> None:
+    features = (
+        "    orbits: [{name: a, through: [[1, 0], [0, 1], [-1, 0], [0, -1]], period: 2}]\n"
+        "    points: [{name: s, is: saddle, at: [0, 0]}]\n"
+    )
+    loaded = load_source(Source("spec.yaml", HEAD + features))
+    assert isinstance(loaded.spec, BehaviorSpec)
+
+    design = check_behavior(loaded, loaded.spec).design
+
+    assert design is not None
+    added = [node for node in design.nodes if node.point.why]
+    ring = design.families[0].rings[0].vertices
+    assert [node.point.kind for node in added] == ["repeller", "repeller"]
+    assert len({node.point.name for node in added}) == 2
+    assert all(encloses(0.9 * ring, node.spot.at) for node in added)
+
+
+def test_the_remedy_for_a_vertex_that_stays_behind_is_a_sketch_without_mistakes(
+    tmp_path: Path,
+) -> None:
+    """The spec of the golden pair, with the place that its own help says."""
+    bad = Path("tests/golden/bad/sketch_orbit_changes_its_shape.yaml")
+    (told,) = check(bad)
+    better = tmp_path / "better.yaml"
+    place = told.help.split("`")[1]
+    text = bad.read_text(encoding="utf-8").replace("size, 0]", f'size, "{place}"]')
+
+    better.write_text(text.replace('"-size", 0]', f'"-size", "{place}"]'), encoding="utf-8")
+
+    assert check(better) == ()
+
+
+def test_a_place_that_leaves_the_domain_at_one_end_of_a_control_only_is_found() -> None:
+    text = HEAD.replace("state:", "control: {r: {unit: m, domain: [0, 2.001], default: 1}}\nstate:")
+    features = "    points: [{is: attractor, at: [r, 0]}, {is: attractor, at: [-1, 0]}]\n"
+    loaded = load_source(Source("spec.yaml", text + features))
+
+    with pytest.raises(SpecError, match=r"S264.*domain of 'x' at r = 2.001 m"):
+        compile_loaded(loaded, lambda *_: None)
