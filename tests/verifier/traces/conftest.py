@@ -214,9 +214,12 @@ class Workshop:
         path.write_bytes(content.encode() if isinstance(content, str) else content)
         return path
 
-    def read(self, path: Path, clock: ClockWish = "auto", **bindings: str | Binding) -> Trace:
+    def read(
+        self, path: Path, clock: ClockWish = "auto", *, strict: bool = False, **bindings: str
+    ) -> Trace:
         """The trace of states of these names, bound so."""
-        return read_trace(path, program([state(name) for name in bindings], bindings), clock)
+        bound = program([state(name) for name in bindings], bindings)
+        return read_trace(path, bound, clock, strict=strict)
 
 
 @pytest.fixture(scope="session")

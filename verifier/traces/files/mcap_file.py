@@ -17,7 +17,10 @@ from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.mcap_chunks import read_chunk
 from verifier.traces.files.mcap_reading import Reading
 from verifier.traces.files.mcap_records import (
+    COMPRESSIONS,
+    FIXED,
     HEAD,
+    KNOWN,
     MAGIC,
     MESSAGE,
     chunk_head,
@@ -29,7 +32,8 @@ from verifier.traces.files.mcap_records import (
 from verifier.traces.files.mcap_summary import read_summary
 
 _PIECE = 1 << 24
-_FIXED: dict[int, int] = {Opcode.DATA_END: 4, Opcode.FOOTER: 20}
+_PRIVATE = 0x80
+"""From here on opcodes are for whoever wants them."""
 
 
 def is_mcap(head: bytes) -> bool:
@@ -100,8 +104,10 @@ class _Walk:
         end = begin + length
         if opcode == Opcode.CHUNK:
             return self._chunk(begin, end)
+        if opcode not in KNOWN and self._disguised(begin, end):
+            return True
         if end > len(self.data) or not self._believable(opcode, begin, end):
-            return False
+            return self._disguised(begin, end)
         self.position = end
         if opcode == Opcode.MESSAGE:
             self.loose = True
@@ -117,9 +123,19 @@ class _Walk:
         """Whether the record can be taken for one. A wrong length leads into other bytes."""
         if opcode == Opcode.MESSAGE:
             return end - begin >= MESSAGE.size and follows(self.data, end)
-        if opcode in _FIXED:
-            return end - begin == _FIXED[opcode]
-        return follows(self.data, end) or is_filled(self.data, opcode, begin, end)
+        if opcode in FIXED:
+            return end - begin == FIXED[opcode]
+        return is_filled(self.data, opcode, begin, end, unknown=follows(self.data, end))
+
+    def _disguised(self, begin: int, end: int) -> bool:
+        """Reads a chunk whose opcode was damaged, but nothing else; False where this is none."""
+        head = chunk_head(self.data, begin, end)
+        if head is None or head.end != end or end > len(self.data):
+            return False
+        if not head.crc or head.compression not in COMPRESSIONS:
+            return False
+        self.reading.gathering.lose("damaged record", f"the opcode of the chunk at byte {begin}")
+        return self._chunk(begin, end)
 
     def _chunk(self, begin: int, claimed: int) -> bool:
         head = chunk_head(self.data, begin, claimed)
@@ -148,6 +164,9 @@ class _Walk:
         elif opcode == Opcode.DATA_END:
             reading.in_summary = True
             self._check_data(begin)
+        elif opcode not in KNOWN and opcode < _PRIVATE:
+            detail = f"of kind {opcode}, at byte {begin}; not read"
+            reading.gathering.lose("unknown record", detail)
 
     def _check_data(self, begin: int) -> None:
         """Records outside chunks have no checksum of their own but that of the whole section."""

@@ -22,8 +22,8 @@ MESSAGE = struct.Struct("<HIQQ")
 _CHUNK_HEAD = struct.Struct("<QQQII")
 
 COMPRESSIONS = frozenset({"", "lz4", "zstd"})
-_OPCODES = frozenset(int(opcode) for opcode in Opcode)
-_FIXED: dict[int, int] = {Opcode.DATA_END: 4, Opcode.FOOTER: 20, Opcode.SUMMARY_OFFSET: 17}
+KNOWN = frozenset(int(opcode) for opcode in Opcode)
+FIXED: dict[int, int] = {Opcode.DATA_END: 4, Opcode.FOOTER: 20, Opcode.SUMMARY_OFFSET: 17}
 # A record's head: an opcode, and a length below 2^40.
 _CANDIDATE = re.compile(rb"(?=[\x01-\x0f].{5}\x00\x00\x00)", re.DOTALL)
 
@@ -104,17 +104,20 @@ def is_record(data: Bytes, position: int, *, loose: bool) -> bool:
         return head is not None and head.compression in COMPRESSIONS
     if end > len(data) or not follows(data, end):
         return False
-    if opcode in _FIXED:
-        return bool(length == _FIXED[opcode])
+    if opcode in FIXED:
+        return bool(length == FIXED[opcode])
     if opcode == Opcode.MESSAGE:
         return loose and length >= MESSAGE.size and _is_chain(data, end)
     return is_filled(data, opcode, begin, end) and (loose or opcode not in _INNER)
 
 
-def is_filled(data: Bytes, opcode: int, begin: int, end: int) -> bool:
-    """Whether the parts of the record take just the bytes that it claims."""
+def is_filled(data: Bytes, opcode: int, begin: int, end: int, *, unknown: bool = False) -> bool:
+    """Whether the parts of the record take just the bytes that it claims.
+
+    unknown: the answer for records whose parts are not read here.
+    """
     reader = _READERS.get(opcode)
-    return reader is not None and reader(bytes(data[begin:end]))
+    return unknown if reader is None else reader(bytes(data[begin:end]))
 
 
 def _follows(data: Bytes, position: int) -> bool:
@@ -124,7 +127,7 @@ def _follows(data: Bytes, position: int) -> bool:
         return False
     opcode, length = HEAD.unpack_from(data, position)
     whole = position + HEAD.size + int(length) <= len(data)
-    return opcode in _OPCODES and (whole or opcode == Opcode.CHUNK)
+    return opcode in KNOWN and (whole or opcode == Opcode.CHUNK)
 
 
 def _is_chain(data: Bytes, position: int) -> bool:
