@@ -187,14 +187,21 @@ class Workshop:
             ),
         )
 
-    def bag1(self, compression: Writer1.CompressionFormat | None = None, count: int = 50) -> Path:
-        """Points stamped every second, logged 5 ms later."""
+    def bag1(
+        self,
+        compression: Writer1.CompressionFormat | None = None,
+        count: int = 50,
+        chunk: int | None = None,
+    ) -> Path:
+        """Points stamped every second, logged 5 ms later; `chunk` of them together."""
         store = get_typestore(Stores.ROS1_NOETIC)
         kind = store.types["geometry_msgs/msg/PointStamped"]
         header = store.types["std_msgs/msg/Header"]
         time = store.types["builtin_interfaces/msg/Time"]
         point = store.types["geometry_msgs/msg/Point"]
         writer = Writer1(self.folder / "log.bag")
+        if chunk:
+            writer.chunk_threshold = 150 * chunk
         if compression:
             writer.set_compression(compression)
         with writer:

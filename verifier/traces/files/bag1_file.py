@@ -66,7 +66,7 @@ def _read_file(data: mmap.mmap, gathering: Gathering[int], tell: Progress) -> No
 
 def _end(data: Bytes, chunk: Record) -> int:
     """Where the chunk ends: where its length says, or else where another record begins."""
-    if chunk.end >= len(data) or record_at(data, chunk.end):
+    if chunk.end == len(data) or record_at(data, chunk.end):
         return chunk.end
     if chunk.header.get(b"compression", b"none") != b"none":
         found = next_record(data, chunk.begin)

@@ -21,6 +21,7 @@ _TOPICS = "SELECT id, name, type, serialization_format FROM topics ORDER BY id"
 _DEFINITIONS = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
 _MESSAGES = "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id"
 _BATCH = 1000
+_HEAD_BYTES = 100
 _ZSTD = b"\x28\xb5\x2f\xfd"
 
 
@@ -32,16 +33,27 @@ def is_sqlite(head: bytes) -> bool:
 def read_bag2(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
     """The messages of one database; raises OSError."""
     gathering: Gathering[int] = Gathering(wanted)
+    size = path.stat().st_size
     try:
+        _check_size(path, size, gathering)
         with closing(_open(path, gathering)) as database:
             _read_topics(database, gathering)
-            _read_rows(database, gathering, tell, path.stat().st_size)
+            _read_rows(database, gathering, tell, size)
     except sqlite3.Error as error:
         # What the tree of pages does not lead to may still stand in its leaves.
         gathering = Gathering(wanted)
         gathering.lose("database damaged", _sentence(error))
+        _check_size(path, size, gathering)
         _salvage(path, gathering, tell)
     return gathering.finished(str(path), "ROS 2 bag")
+
+
+def _check_size(path: Path, size: int, gathering: Gathering[int]) -> None:
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    claimed = pages_claimed(head) * page_size(head)
+    if claimed > size:
+        gathering.lose("file cut", f"{claimed} bytes expected, {size} found")
 
 
 def _open(path: Path, gathering: Gathering[int]) -> sqlite3.Connection:
@@ -128,8 +140,6 @@ def _salvage(path: Path, gathering: Gathering[int], tell: Progress) -> None:
     topics: dict[int, tuple[str, str, str]] = {}
     last = 0
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        if pages_claimed(data) * page_size(data) > len(data):
-            gathering.lose("file cut", f"{pages_claimed(data)} pages expected")
         for place, number, row in stray_rows(data):
             match row:
                 case [None, int(topic), int(log_time), bytes(payload)]:

@@ -47,7 +47,8 @@ def unpack_file(path: Path, target: Path) -> str:
     """Unpacks as much as can be had into `target`; what stopped it early, or an empty text."""
     with ExitStack() as stack:
         file = stack.enter_context(path.open("rb"))
-        magic = next(magic for magic in _OPENERS if file.read(8).startswith(magic))
+        head = file.read(8)
+        magic = next(magic for magic in _OPENERS if head.startswith(magic))
         file.seek(0)
         out = stack.enter_context(target.open("wb"))
         reader = _OPENERS[magic](file)

@@ -1,0 +1,280 @@
+"""Faulty bags, CSV files and packed files, each made here: nothing crashes, nothing is silent."""
+
+import bz2
+import gzip
+import lzma
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import lz4.frame
+import numpy as np
+import pytest
+import zstandard
+from mcap.writer import CompressionType
+from rosbags.rosbag1 import Writer as Writer1
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as Writer2
+
+from spec_schema.diagnostics import SpecError
+from verifier.traces.files.bag1_file import MAGIC
+from verifier.traces.files.bag1_records import CHUNK, record_at
+from verifier.traces.inventory import inspect
+from verifier.traces.trace import Trace
+
+SECOND = 1_000_000_000
+ROWS = "".join(f"{0.1 * i:.1f},{i:03d}.25\n" for i in range(100))
+SHEET = "t,x\n" + ROWS
+BZ2, LZ4 = Writer1.CompressionFormat.BZ2, Writer1.CompressionFormat.LZ4
+
+
+def told(trace: Trace) -> str:
+    losses = [f"{loss.cause}: {loss.detail}" for loss in trace.losses]
+    return "\n".join([*losses, *trace.notes])
+
+
+def chunk_places(data: bytes) -> list[int]:
+    """Where the headers of a ROS 1 bag's chunks begin."""
+    places, position = [], len(MAGIC)
+    while record := record_at(data, position):
+        if record.kind == CHUNK:
+            places.append(position)
+        position = record.end
+    return places
+
+
+def changed(data: bytes, place: int, new: bytes) -> bytes:
+    return data[:place] + new + data[place + len(new) :]
+
+
+BAGS: dict[str, tuple[Any, Callable[[bytes], bytes], int, str]] = {
+    "cut in a plain chunk": (None, lambda b: b[: len(b) // 2], 150, "torn chunk"),
+    "cut in a bz2 chunk": (BZ2, lambda b: b[: chunk_places(b)[2] + 400], 60, "torn chunk"),
+    "cut in an lz4 chunk": (LZ4, lambda b: b[: chunk_places(b)[2] + 400], 60, "torn chunk"),
+    "without its index": (None, lambda b: b[: b.rfind(b"op=\x06") - 60], 300, "file cut"),
+    "garbage between chunks": (
+        BZ2,
+        lambda b: b[: chunk_places(b)[2]] + bytes(range(256)) + b[chunk_places(b)[2] :],
+        400,
+        "damaged bytes",
+    ),
+    "a chunk's header zeroed": (
+        BZ2, lambda b: changed(b, chunk_places(b)[2], bytes(40)), 290, "damaged bytes",
+    ),
+    "a bz2 chunk overwritten": (
+        BZ2, lambda b: changed(b, chunk_places(b)[2] + 120, bytes(50)), 290, "corrupt chunk",
+    ),
+    "an lz4 chunk overwritten": (
+        LZ4, lambda b: changed(b, chunk_places(b)[2] + 120, b"\xff" * 50), 290, "corrupt chunk",
+    ),
+    "an unknown compression": (
+        BZ2,
+        lambda b: changed(b, b.find(b"compression=", chunk_places(b)[2]) + 12, b"xz2"),
+        290,
+        "corrupt chunk",
+    ),
+    "a wrong length of a chunk": (
+        BZ2,
+        lambda b: changed(b, chunk_places(b)[2] + 4 + b[chunk_places(b)[2]] + 2, b"\7"),
+        290,
+        "damaged record",
+    ),
+    "another version": (None, lambda b: b.replace(b"V2.0", b"V2.1", 1), 400, "bag version"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(BAGS))
+def test_a_faulty_ros_1_bag_gives_what_it_can(workshop: Any, name: str) -> None:
+    compression, damage, least, cause = BAGS[name]
+    path = workshop.bag1(compression, count=400, chunk=60)
+    path.write_bytes(damage(path.read_bytes()))
+
+    inspect(path)
+    trace = workshop.read(path, x="/p.point.x")
+
+    series = trace.series["x"]
+    # Point i is stamped 10 + i.
+    assert series.values.tolist() == np.round(trace.start + series.times - 10.0).tolist()
+    assert least <= len(series.values)
+    assert cause in told(trace)
+
+
+def write_database(workshop: Any, count: int = 400) -> Path:
+    folder: Path = workshop.folder / "bag"
+    with Writer2(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connection = writer.add_connection("/o", "nav_msgs/msg/Odometry", typestore=workshop.store)
+        for i in range(count):
+            payload = workshop.store.serialize_cdr(
+                workshop.odometry(10.0 + i, x=float(i)), "nav_msgs/msg/Odometry"
+            )
+            writer.write(connection, (10 + i) * SECOND, payload)
+    (database,) = folder.glob("*.db3")
+    return database
+
+
+def zero_leaf(data: bytes) -> bytes:
+    """A page with messages in the middle, zeroed."""
+    pages = [p for p in range(0, len(data), 4096) if data[p] == 0x0D and p > len(data) // 2]
+    return changed(data, pages[0], bytes(4096))
+
+
+def zero_tree(data: bytes) -> bytes:
+    """The page that leads to the messages, zeroed."""
+    (page,) = [p for p in range(4096, len(data), 4096) if data[p] == 0x05][:1]
+    return changed(data, page, bytes(4096))
+
+
+@pytest.mark.parametrize(
+    ("damage", "least", "cause"),
+    [
+        (lambda b: b[: len(b) * 3 // 4], 280, "database damaged"),
+        (lambda b: b[:-10], 380, "file cut"),
+        (zero_leaf, 390, "database damaged"),
+        (zero_tree, 400, "database damaged"),
+    ],
+    ids=["cut", "without its last bytes", "a page zeroed", "its tree zeroed"],
+)
+def test_a_damaged_database_gives_the_rows_that_are_left(
+    workshop: Any, damage: Callable[[bytes], bytes], least: int, cause: str
+) -> None:
+    path = write_database(workshop)
+    path.write_bytes(damage(path.read_bytes()))
+
+    trace = workshop.read(path, x="/o.pose.pose.position.x")
+
+    series = trace.series["x"]
+    assert series.values.tolist() == np.round(trace.start + series.times - 10.0).tolist()
+    assert least <= len(series.values)
+    assert cause in told(trace)
+
+
+def test_a_database_with_values_of_other_types_loses_those_rows(workshop: Any) -> None:
+    path = write_database(workshop, 20)
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE messages SET timestamp = 'soon' WHERE id = 3")
+        database.execute("UPDATE messages SET timestamp = -5 WHERE id = 4")
+        database.execute("UPDATE messages SET data = x'0001' WHERE id = 5")
+    database.close()
+
+    trace = workshop.read(path, x="/o.pose.pose.position.x")
+
+    assert len(trace.series["x"].values) == 17
+    assert {"corrupt record", "impossible log time", "unreadable messages"} == {
+        loss.cause for loss in trace.losses
+    }
+
+
+def test_what_a_killed_recorder_left_in_the_write_ahead_log_is_read(workshop: Any) -> None:
+    path = write_database(workshop, 20)
+    database = sqlite3.connect(path)
+    database.execute("PRAGMA journal_mode = WAL")
+    database.execute("PRAGMA wal_autocheckpoint = 0")
+    database.execute("UPDATE messages SET timestamp = ? WHERE id = 20", (100 * SECOND,))
+    database.commit()
+    copy = path.with_name("copy.db3")
+    for suffix in ("", "-wal"):
+        Path(f"{copy}{suffix}").write_bytes(Path(f"{path}{suffix}").read_bytes())
+    database.close()
+
+    trace = workshop.read(copy, "log", x="/o.pose.pose.position.x")
+
+    assert trace.series["x"].times[-1] == 90.0
+
+
+SHEETS: dict[str, tuple[bytes, int, str]] = {
+    "a torn last row": (SHEET.encode() + b"10.0", 100, "missing or extra cells"),
+    "a last cell that is cut": (SHEET.encode()[:-4], 99, "last row cut"),
+    "ragged rows": (SHEET.replace("5.0,", "5.0,1,").encode(), 90, "missing or extra cells"),
+    "zero bytes": (SHEET.replace("\n0.7,", "\n\0\0\0,").encode(), 99, "zero bytes"),
+    "a byte order mark": (b"\xef\xbb\xbf" + SHEET.encode(), 100, "column 't'"),
+    "UTF-16": (SHEET.encode("utf-16"), 100, "column 't'"),
+    "bytes that are not UTF-8": (SHEET.replace("3.0", "3.\xff").encode("latin-1"), 95, "UTF-8"),
+    "decimal commas": (SHEET.replace(",", ";").replace(".", ",").encode(), 100, "decimal commas"),
+    "an open quote": (SHEET.replace("\n2.0,", '\n2.0,"').encode(), 99, "missing or extra cells"),
+    "some rows of another separator": (
+        SHEET.replace("\n4.1,", "\n4.1;").encode(), 99, "missing or extra cells",
+    ),
+    "rows without a time": (SHEET.replace("\n6.6,", "\n,").encode(), 99, "without a time"),
+    "a time of the year 30000": (SHEET.replace("\n6.6,", "\n9e11,").encode(), 99, "without a time"),
+    "NaN": (SHEET.replace("066.25", "nan").encode(), 99, "no finite value"),
+    "two rows of one time": (SHEET.replace("\n0.4,", "\n0.3,").encode(), 99, "repeated times"),
+    "a clock that is set back": (
+        SHEET.replace("\n9.9,", "\n-9.9,").encode(), 99, "clock set back",
+    ),
+    "lines that end as on a Mac": (SHEET.replace("\n", "\r").encode(), 100, "column 't'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(SHEETS))
+def test_a_faulty_csv_file_gives_what_it_can(workshop: Any, name: str) -> None:
+    data, least, said = SHEETS[name]
+
+    trace = workshop.read(workshop.text(data), x="x")
+
+    series = trace.series["x"]
+    seen = np.round((trace.start + series.times) * 10.0) + 0.25
+    assert series.values.tolist() == seen.tolist()
+    assert least <= len(series.values) <= 100
+    assert said in told(trace)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (SHEET.replace(".", ","), "decimal commas"),
+        ("t;x\n" + ROWS, "separated by ';', the rows by ','"),
+        ("t,x,y,z\n" + ROWS, "2 cells, the header 4"),
+        ("t\0,x\n" + ROWS, "no log that specc knows"),
+        ("version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"),
+        ("<!DOCTYPE html>\n<p>404, not found\n", "page of the web"),
+        (bytes(5000), "zero bytes"),
+    ],
+)
+def test_what_can_be_no_table_is_refused_with_the_reason(
+    workshop: Any, data: str | bytes, said: str
+) -> None:
+    with pytest.raises(SpecError, match=f"(?s)V302.*{said}"):
+        workshop.read(workshop.text(data), x="x")
+
+
+PACKERS = {
+    "gz": gzip.compress,
+    "zst": zstandard.ZstdCompressor().compress,
+    "bz2": bz2.compress,
+    "xz": lzma.compress,
+    "lz4": lz4.frame.compress,
+}
+
+
+@pytest.mark.parametrize("suffix", list(PACKERS))
+def test_a_packed_log_is_unpacked_whole_or_torn(workshop: Any, make: Any, suffix: str) -> None:
+    rng = np.random.default_rng(2)
+    notes = [make.said("/a", 0.1 * i, x=float(i), r=rng.random()) for i in range(4000)]
+    inside = workshop.mcap(notes, "inside.mcap", CompressionType.NONE, 10_000).read_bytes()
+    packed = PACKERS[suffix](inside)
+    whole = workshop.text(packed, f"log.mcap.{suffix}")
+    trace = workshop.read(whole, x="/a.x")
+    assert trace.series["x"].values.tolist() == list(range(4000))
+    assert trace.losses == ()
+
+    torn = workshop.text(packed[: len(packed) * 9 // 10], f"torn.mcap.{suffix}")
+    try:
+        trace = workshop.read(torn, x="/a.x")
+    except SpecError as error:
+        assert "torn.mcap" in str(error)  # noqa: PT017  # either is an answer
+    else:
+        found = trace.series["x"].values.tolist()
+        assert found == list(range(len(found)))
+        assert trace.losses
+
+
+def test_an_empty_part_of_a_folder_is_counted(workshop: Any, make: Any) -> None:
+    folder = workshop.folder / "run"
+    folder.mkdir()
+    workshop.mcap([make.said("/a", 0.1 * i, x=float(i)) for i in range(9)], "run/run_0.mcap")
+    workshop.text("", "run/run_1.mcap")
+
+    trace = workshop.read(folder, x="/a.x")
+
+    assert [(loss.cause, loss.detail) for loss in trace.losses] == [("empty file", "run_1.mcap")]
