@@ -12,9 +12,9 @@ from verifier.fidelity.stretches.needs import Needs
 from verifier.report.wording import seconds
 from verifier.traces.trace import Series, Trace
 
-MOST_HORIZONS: Final = 60.0
+MOST_HORIZONS: Final = 40.0
 """Longer traces catch hardly smaller faults: what is shown must exceed the tolerance anyway."""
-MOST_SAMPLES: Final = 24_000
+MOST_SAMPLES: Final = 10_000
 """Of all series together, unless that would be less than the fewest horizons."""
 FEWEST_HORIZONS: Final = 20.0
 

@@ -56,6 +56,7 @@ def knots_of(study: Study) -> Knots:
     inputs = np.stack(means, axis=-1) if means else np.empty((len(times), 0))
     after = np.append(times[1:], times[-1:])
     states = _measured(study, inputs, times)
+    leaps = np.flatnonzero(np.isin(times, model.grid.times[model.grid.leaps]))
     n, p = model.states, len(model.flow.program.controls)
     return Knots(
         times=times,
@@ -65,7 +66,7 @@ def knots_of(study: Study) -> Knots:
         middle=_measured(study, inputs, (times + after) / 2.0)[:, :n],
         controls=states[:, n : n + p],
         is_map=model.flow.is_map,
-        grid=Grid(times, inputs, model.grid.columns),
+        grid=Grid(times, inputs, model.grid.columns, leaps),
     )
 
 

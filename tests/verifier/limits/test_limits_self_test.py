@@ -173,7 +173,7 @@ def test_an_input_that_is_not_told_is_assumed_and_said(scenes: ModuleType) -> No
 
 
 def test_a_long_trace_is_planted_into_where_most_moves(scenes: ModuleType) -> None:
-    """Standing for 300 s, a gap, then 200 s of swinging: 60 horizons of 2 s are taken."""
+    """Standing for 300 s, a gap, then 200 s of swinging: 40 horizons of 2 s are taken."""
     program, swinging = scenes.van_der_pol(), scenes.van_der_pol_drive(1, 200.0, 0.01)
     times = np.arange(0.0, 300.0, 0.05)
     noise = 0.01 * np.random.default_rng(0).standard_normal((2, len(times)))
@@ -192,5 +192,5 @@ def test_a_long_trace_is_planted_into_where_most_moves(scenes: ModuleType) -> No
 
     _, notes = smallest_caught(program, trace, report, judge)
 
-    assert "120 s of the 505 s" in notes[0]
+    assert "80 s of the 505 s" in notes[0]
     assert min(copy.series["x"].times[0] for copy in seen) > 304.0
