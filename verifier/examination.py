@@ -5,8 +5,10 @@ other sections explain it, say how far it reaches, and never make it better.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from runtime.program import Program
+from verifier.diagnosis.diagnose import diagnose
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.fidelity.switching.judge import switching_in
 from verifier.fidelity.verify import judged
@@ -41,21 +43,17 @@ def examine(
         return Examination(report, origins=origins)
     tell("changes of mode")
     switching = switching_in(program, trace)
+    tell("why it departs")
+    diagnosis = diagnose(program, trace, study, report)
     tell("features of the field")
     features = compare_features(program, trace, study)
+    partial = Examination(report, switching, diagnosis, None, features, None, origins)
     if study is None:
-        return Examination(report, switching=switching, features=features, origins=origins)
+        return partial
     tell("the limits of this trace")
     limits = limits_of(program, trace, study, report)
     tell("scores")
-    return Examination(
-        report,
-        switching=switching,
-        limits=limits,
-        features=features,
-        scores=scores_of(study, report),
-        origins=origins,
-    )
+    return replace(partial, limits=limits, scores=scores_of(study, report))
 
 
 def origins_of(program: Program) -> dict[str, str]:
