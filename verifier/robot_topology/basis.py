@@ -1,8 +1,8 @@
 """Smooth corrections of a field on the region that a trace visited.
 
-A correction of one rate is a Gaussian process with a squared exponential kernel, seen through a
-few inducing places in the visited region (subset of regressors: Quinonero-Candela and Rasmussen,
-2005): g(x) = phi(x) . c with phi(x) = k(x, Z) L^-T, L L^T = k(Z, Z), so that c has the prior
+A correction of one rate is a Gaussian process with a Matérn kernel of smoothness 3/2 (a smoother
+one is too sure of itself between samples), seen through a few inducing places in the visited region
+(subset of regressors: Quinonero-Candela and Rasmussen 2005): g(x) = phi(x) . c with phi(x) = k(x, Z) L^-T, L L^T = k(Z, Z), so that c has the prior
 N(0, s^2 I) and g about the variance s^2 wherever the trace went. An angle enters by its place on
 the circle.
 
@@ -17,13 +17,11 @@ from scipy.linalg import solve_triangular
 
 from runtime.arrays import Array
 
-LENGTH: Final = 0.25
-"""The kernel's length on an axis, as a share of what was visited of it."""
-ACROSS: Final = {1: 9, 2: 7, 3: 5}
-"""Places on an axis, by the number of axes."""
-MOST: Final = 48
-"""Places at most: those with most samples near."""
-NEAR: Final = 0.75
+SPACING: Final = 0.33
+"""Distance of neighbouring places, in lengths."""
+MOST: Final = 150
+"""Places at most."""
+NEAR: Final = 0.4
 """A place is kept where a sample is within so many lengths."""
 JITTER: Final = 1e-6
 
@@ -31,9 +29,13 @@ JITTER: Final = 1e-6
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Basis:
-    """places (K, m); lengths, turns (m,): of the kernel and of the angles; root: L^-T (K, K)."""
+    """places (K, m); lengths, turns (m,): of the kernel and of the angles; root: L^-T (K, K).
+
+    extent (m,): how much of each axis was visited.
+    """
 
     places: Array
+    extent: Array
     lengths: Array
     turns: Array
     root: Array
@@ -44,47 +46,52 @@ class Basis:
         return len(self.places)
 
 
-def basis_on(points: Array, turns: Array) -> Basis:
-    """The basis on the region that `points` (N, m) visit."""
+def basis_on(points: Array, turns: Array, length: float) -> Basis | None:
+    """The basis on the region that `points` (N, m) visit; None where it would be too large.
+
+    length: of the kernel on each axis, as a share of what was visited of it.
+    """
     low, high = np.quantile(points, 0.005, axis=0), np.quantile(points, 0.995, axis=0)
     size = np.maximum(high - low, 1e-9 * (np.abs(low) + np.abs(high) + 1.0))
     size = np.where(turns > 0.0, np.minimum(size, turns), size)
-    lengths = LENGTH * size
-    count = ACROSS.get(points.shape[1], 4)
-    grid = np.stack(
-        np.meshgrid(
-            *[
-                a + w * (np.arange(count) / (count if t > 0.0 and w >= 0.99 * t else count - 1))
-                for a, w, t in zip(low, size, turns, strict=True)
-            ],
-            indexing="ij",
-        ),
-        axis=-1,
-    ).reshape(-1, points.shape[1])
-    near = np.sum(_distance(grid, points, lengths, turns) <= NEAR**2, axis=1)
-    order = np.argsort(-near, kind="stable")[:MOST]
-    places = grid[np.sort(order[near[order] > 0])]
-    kernel = np.exp(-0.5 * _distance(places, places, lengths, turns))
+    count = 1 + int(np.ceil(1.0 / (SPACING * length)))
+    axes = [
+        a + w * np.arange(count) / (count if 0.99 * turn <= w and turn > 0.0 else count - 1)
+        for a, w, turn in zip(low, size, turns, strict=True)
+    ]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, points.shape[1])
+    near = np.min(_distance(grid, points, length * size, turns), axis=1) <= NEAR**2
+    places = grid[near]
+    if not 0 < len(places) <= MOST:
+        return None
+    kernel = _kernel(_distance(places, places, length * size, turns))
     lower = np.linalg.cholesky(kernel + JITTER * np.eye(len(places)))
     root = solve_triangular(lower, np.eye(len(places)), lower=True).T
-    return Basis(places, lengths, turns, root)
+    return Basis(places, size, length * size, turns, root)
 
 
 def functions(basis: Basis, points: Array) -> Array:
-    """Phi (..., K) at points (..., m)."""
-    kernel = np.exp(-0.5 * _distance(points, basis.places, basis.lengths, basis.turns))
-    return np.asarray(kernel @ basis.root)
+    """phi (..., K) at points (..., m)."""
+    squares = _distance(points, basis.places, basis.lengths, basis.turns)
+    return np.asarray(_kernel(squares) @ basis.root)
 
 
 def slopes(basis: Basis, points: Array, weights: Array) -> Array:
     """Derivatives (..., D, m) of the sums weights (..., D, K) . phi at points (..., m)."""
-    kernel = np.exp(-0.5 * _distance(points, basis.places, basis.lengths, basis.turns))
+    squares = _distance(points, basis.places, basis.lengths, basis.turns)
+    steepness = -3.0 * np.exp(-np.sqrt(3.0 * squares))
     off = points[..., None, :] - basis.places
     turned = basis.turns > 0.0
     safe = np.where(turned, basis.turns, 1.0)
     along = np.where(turned, safe / (2.0 * np.pi) * np.sin(2.0 * np.pi * off / safe), off)
-    by_place = -kernel[..., None] * along / basis.lengths**2
+    by_place = steepness[..., None] * along / basis.lengths**2
     return np.asarray((weights @ basis.root.T) @ by_place)
+
+
+def _kernel(squares: Array) -> Array:
+    """Of squared distances in lengths: (1 + sqrt(3) r) exp(-sqrt(3) r)."""
+    far = np.sqrt(3.0 * squares)
+    return np.asarray((1.0 + far) * np.exp(-far))
 
 
 def _distance(points: Array, places: Array, lengths: Array, turns: Array) -> Array:

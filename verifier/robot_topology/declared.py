@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from runtime.claim import Claim
+from verifier.fidelity.stretches.needs import parts_of
 from verifier.robot_topology.laps import on_cycle
 from verifier.robot_topology.scene import Scene, shortest
 from verifier.topology.claims.members import Fit, members, values_at
@@ -87,10 +88,11 @@ def _said(claim: Claim) -> int:
 def _speaks_here(scene: Scene, claim: Claim) -> bool:
     """Whether the claim holds for the setting of the scene, and for its axes."""
     here = dict(scene.setting.values)
-    parts = {part.name: part for part in (*scene.program.states, *scene.program.controls)}
+    parts = parts_of(scene.program)
     spans = {span.control: (span.low, span.high) for span in claim.over}
     names = {axis.name for axis in scene.axes}
-    if any(each.state not in names for each in (*claim.places, *claim.reaches)):
+    spoken = {place.state for place in claim.places} | {reach.state for reach in claim.reaches}
+    if not spoken <= names:
         return False
     for name, value in here.items():
         room = ALIKE * (parts[name].high - parts[name].low)

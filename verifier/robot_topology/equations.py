@@ -22,7 +22,7 @@ FLOOR: Final = 1e-6
 """Noise is at least this share of the domain."""
 START: Final = 0.1
 """A start is within this share of the domain of where it is sought."""
-SHAPED_BY: Final = 2000
+SHAPED_BY: Final = 1000
 """Samples that the visited region is told from."""
 
 
@@ -84,8 +84,8 @@ class Equations:
         )
 
 
-def job_of(study: Study, chosen: Integers) -> Job:
-    """The job of the windows `chosen`."""
+def job_of(study: Study, chosen: Integers, length: float) -> Job | None:
+    """The job of the windows `chosen`; None where the kernel's `length` is too short for it."""
     plan = study.plan
     grid, flow = plan.model.grid, plan.model.flow
     first, last = plan.windows.first[chosen], plan.windows.last[chosen]
@@ -97,9 +97,12 @@ def job_of(study: Study, chosen: Integers) -> Job:
     turns = np.array([each.turn for each in plan.samples])
     measured = _measured(study, knots, past)
     is_state = grid.columns < plan.model.states
+    basis = basis_on(_visited(study, measured, chosen, columns), turns, length)
+    if basis is None:
+        return None
     field = Corrected(
         flow=flow,
-        basis=basis_on(_visited(study, measured, chosen, columns), turns),
+        basis=basis,
         columns=columns,
         lows=np.array([each.state.low for each in plan.samples]),
         turns=turns,
@@ -207,8 +210,9 @@ def _eliminated(job: Job, whole: Array, right: Array, paths: Array) -> Equations
     axes = len(job.widths)
     of_start = whole[:, :axes, :axes] + np.diag((START * job.widths) ** -2.0)
     mixed = whole[:, :axes, axes:]
-    response = np.linalg.solve(of_start, mixed)
-    move = np.linalg.solve(of_start, right[:, :axes, None])[..., 0]
+    inverse: Array = np.linalg.inv(of_start).astype(np.float64)
+    response = inverse @ mixed
+    move = (inverse @ right[:, :axes, None])[..., 0]
     information = whole[:, axes:, axes:] - np.swapaxes(mixed, 1, 2) @ response
     score = right[:, axes:] - np.einsum("wdp,wd->wp", mixed, move)
     return Equations(information, score, move, response, paths)

@@ -1,7 +1,8 @@
 """The spec's field, refitted to a trace by multiple shooting.
 
 The rate of each axis i becomes f_i (1 + a_i) + g_i(x): a gain and a smooth correction (see
-`basis`), fitted on windows of one horizon whose start states are free (Gauss-Newton).
+`basis`), fitted on windows of one horizon whose start states are free (Gauss-Newton). How smooth
+the correction is, the length of its kernel, is told by the marginal likelihood as well.
 """
 
 from dataclasses import dataclass
@@ -13,14 +14,16 @@ from runtime.arrays import Array, Integers
 from verifier.fidelity.shooting.plan import Plan
 from verifier.fidelity.shooting.study import Study
 from verifier.robot_topology.corrected import Corrected
-from verifier.robot_topology.equations import equations, job_of
-from verifier.robot_topology.shrinkage import solved
+from verifier.robot_topology.equations import Job, equations, job_of
+from verifier.robot_topology.shrinkage import effect_of, evidence_of, solved
 
-MOST_WINDOWS: Final = 300
+MOST_WINDOWS: Final = 160
 MOST_STEPS: Final = 12_000
 """Windows times steps: bounds time and memory."""
 FEWEST_WINDOWS: Final = 8
 ROUNDS: Final = 3
+LENGTHS: Final = (0.9, 0.45, 0.25)
+"""Of the kernel, as shares of what was visited."""
 
 
 @final
@@ -53,9 +56,12 @@ def refitted(study: Study, allowed: Array) -> Refit | None:
     chosen = _chosen(plan)
     if len(chosen) < FEWEST_WINDOWS:
         return None
-    job = job_of(study, chosen)
-    columns = job.field.columns
     start = np.array(study.shots.start[chosen])
+    least = allowed / plan.windows.horizon
+    job = _likeliest(study, chosen, start, least)
+    if job is None:
+        return None
+    columns = job.field.columns
     found, root = np.zeros(job.field.count), np.eye(job.field.count)
     for _ in range(ROUNDS):
         rows = equations(job, start, found)
@@ -63,10 +69,30 @@ def refitted(study: Study, allowed: Array) -> Refit | None:
         if good.sum() < FEWEST_WINDOWS:
             return None
         job, rows, start = job.part(good), rows.part(good), start[good]
-        value, root = solved(rows, found, allowed / plan.windows.horizon)
+        value, root = solved(rows, found, least)
         start[:, columns] += rows.move - rows.response @ (value - found)
         found = value
     return Refit(job.field, found, root, rows.paths)
+
+
+def _likeliest(study: Study, chosen: Integers, start: Array, least: Array) -> Job | None:
+    """The job with the length of the kernel that explains the trace best."""
+    tried = []
+    for length in LENGTHS:
+        job = job_of(study, chosen, length)
+        if job is None:
+            continue
+        rows = equations(job, start, np.zeros(job.field.count))
+        rows = rows.part(rows.is_finite)
+        if len(rows.paths) < FEWEST_WINDOWS:
+            return None
+        tried.append((job, rows))
+    if not tried:
+        return None
+    effect = min(effect_of(rows, np.zeros(job.field.count), least) for job, rows in tried)
+    return max(
+        tried, key=lambda each: evidence_of(each[1], np.zeros(each[0].field.count), least, effect)
+    )[0]
 
 
 def _chosen(plan: Plan) -> Integers:

@@ -114,7 +114,8 @@ def _run(
     for k in range(count):
         x = step(refit.field, x, u, np.array(seconds), draws)
         found[k + 1] = x[:, list(scene.columns)]
-    return np.swapaxes(found, 0, 1), seconds * np.arange(count + 1)
+    times: Array = seconds * np.arange(count + 1, dtype=np.float64)
+    return np.swapaxes(found, 0, 1), times
 
 
 def _last_lap(

@@ -1,7 +1,7 @@
 """Fixed points of the refitted field, near those of the spec.
 
 Newton's method from the spec's point, for the estimate and for draws of what the coefficients may
-be, all at once. A point is *visited* when windows of the fit went past within the kernel's reach:
+be, all at once. A point is *visited* when windows of the fit went past nearby:
 elsewhere the correction is a guess.
 
 Letters: B lanes (the estimate and the draws), m axes.
@@ -25,10 +25,10 @@ STRIDE: Final = 0.05
 """A step of Newton's method is at most so long, as a share of the domain."""
 EXACT: Final = 1e-9
 """Steps below this share of the domain have arrived."""
-REACH: Final = 0.75
-"""How near a path comes to a point that it visits, in lengths of the kernel."""
-AWAY: Final = 2.0
-"""Further from the spec's point, in lengths of the kernel, it is another one."""
+REACH: Final = 0.15
+"""How near a path comes to a point that it visits, as a share of what was visited."""
+AWAY: Final = 0.5
+"""Further from the spec's point, as a share of what was visited, it is another one."""
 PASSES: Final = 3
 """Windows that a visited point needs."""
 
@@ -70,8 +70,8 @@ def refitted_point(view: RefitView, point: FixedPoint) -> RefittedPoint:
     scene, refit, draws = view.scene, view.refit, view.draws
     lanes, arrived = _zeros(scene, refit, point.at, draws)
     off = shortest(lanes - point.at, scene.turns)
-    lengths = refit.field.basis.lengths
-    arrived &= np.sqrt(np.sum((off / lengths) ** 2, axis=-1)) <= AWAY
+    extent = refit.field.basis.extent
+    arrived &= np.sqrt(np.sum((off / extent) ** 2, axis=-1)) <= AWAY
     place = lanes[0] if arrived[0] else point.at
     alike = arrived & (_unstable(scene, refit, lanes, draws) == _unstable_of(point))
     at = None
@@ -87,7 +87,7 @@ def refitted_point(view: RefitView, point: FixedPoint) -> RefittedPoint:
 
 def passes_near(scene: Scene, refit: Refit, place: Array) -> int:
     """How many windows went past `place` (m,)."""
-    off = shortest(refit.paths - place, scene.turns) / refit.field.basis.lengths
+    off = shortest(refit.paths - place, scene.turns) / refit.field.basis.extent
     near = np.sum(off**2, axis=-1) <= REACH**2
     return int(np.sum(np.any(near, axis=-1)))
 

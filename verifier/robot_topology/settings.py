@@ -10,8 +10,8 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array, Booleans
-from runtime.program import Kind, Program
-from verifier.fidelity.stretches.needs import Input, Needs, held
+from runtime.program import Kind, Program, State
+from verifier.fidelity.stretches.needs import Input, Needs, held, parts_of
 from verifier.topology.features import Settings
 
 CELL: Final = 0.02
@@ -68,11 +68,10 @@ def _values(given: Input, times: Array) -> Array:
 
 
 def _width(program: Program, given: Input) -> float:
-    for part in (*program.states, *program.controls):
-        discrete = getattr(part, "kind", None) is Kind.DISCRETE
-        if part.name == given.name and not discrete:
-            return part.high - part.low
-    return 1.0
+    part = parts_of(program)[given.name]
+    if isinstance(part, State) and part.kind is Kind.DISCRETE:
+        return 1.0
+    return part.high - part.low
 
 
 def _defaults(program: Program, needs: Needs) -> list[tuple[str, float]]:

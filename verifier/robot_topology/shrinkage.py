@@ -30,22 +30,46 @@ def solved(rows: Equations, found: Array, least: Array) -> tuple[Array, Array]:
 
     least (D,): of the sizes of the corrections, a rate per axis.
     """
-    information = np.sum(rows.information, axis=0)
-    right = np.sum(rows.score, axis=0) + information @ found
-    count = len(found) // len(least)
-    effect = 1.0
-    for _ in range(2):
-        data, side = information / effect, right / effect
-        prior = max(
-            (_prior(least * size, count) for size in SIZES),
-            key=lambda each: _evidence(data, side, each),
-        )
-        value = np.linalg.solve(data + np.diag(1.0 / prior), side)
-        precision = information + effect * np.diag(1.0 / prior)
-        effect = max(1.0, _design_effect(rows, value - found, precision))
+    information, right = _sums(rows, found)
+    effect = effect_of(rows, found, least)
+    prior = _best_prior(information / effect, right / effect, least)
     precision = information / effect + np.diag(1.0 / prior)
     value = np.linalg.solve(precision, right / effect)
-    return value, np.linalg.cholesky(np.linalg.inv(precision))
+    root: Array = np.linalg.cholesky(np.linalg.inv(precision)).astype(np.float64)
+    return value.astype(np.float64), root
+
+
+def effect_of(rows: Equations, found: Array, least: Array) -> float:
+    """By how much the errors of blocks of windows spread more than independent ones."""
+    information, right = _sums(rows, found)
+    effect = 1.0
+    for _ in range(2):
+        prior = _best_prior(information / effect, right / effect, least)
+        precision = information + effect * np.diag(1.0 / prior)
+        value = np.linalg.solve(precision, right)
+        effect = max(1.0, _design_effect(rows, value - found, precision))
+    return effect
+
+
+def evidence_of(rows: Equations, found: Array, least: Array, effect: float) -> float:
+    """The logarithm of the marginal likelihood, of the best size, but for a constant."""
+    information, right = _sums(rows, found)
+    prior = _best_prior(information / effect, right / effect, least)
+    return _evidence(information / effect, right / effect, prior)
+
+
+def _sums(rows: Equations, found: Array) -> tuple[Array, Array]:
+    """The normal equations of all windows, for the coefficients themselves."""
+    information = np.sum(rows.information, axis=0)
+    return information, np.sum(rows.score, axis=0) + information @ found
+
+
+def _best_prior(information: Array, right: Array, least: Array) -> Array:
+    count = len(right) // len(least)
+    return max(
+        (_prior(least * size, count) for size in SIZES),
+        key=lambda each: _evidence(information, right, each),
+    )
 
 
 def _prior(sizes: Array, count: int) -> Array:
