@@ -19,7 +19,7 @@ from verifier.fidelity.shooting.study import Study
 
 def altered_study(scene: Scene, study: Study, setting: Altered) -> Study:
     """The study with the inputs, numbers and measured states of `setting`, shot again."""
-    flow, grid = _settled(scene, setting), _grid(scene, study, setting)
+    flow, grid = settled(scene, setting), _grid(scene, study, setting)
     samples = tuple(_samples(each, setting.seen[each.state.name]) for each in study.plan.samples)
     plan = Plan(study.plan.needs, Model(flow, grid), samples, study.plan.windows)
     shots = shoot(plan, study.noise)
@@ -35,14 +35,15 @@ def _no_calmer(new: Errors, old: Errors) -> Errors:
     return replace(new, variance=np.maximum(new.variance, np.nan_to_num(old.variance)))
 
 
-def _settled(scene: Scene, setting: Altered) -> Flow:
+def settled(scene: Scene, setting: Altered) -> Flow:
     """The flow with the setting's numbers as its defaults."""
-    names = scene.flow.program.register
-    defaults = np.array(scene.flow.defaults)
+    flow = scene.flow_for([setting])
+    names = flow.program.register
+    defaults = np.array(flow.defaults)
     for name, value in setting.register.items():
         defaults[names.index(name)] = value
     defaults.setflags(write=False)
-    return replace(scene.flow, defaults=defaults)
+    return replace(flow, defaults=defaults)
 
 
 def _grid(scene: Scene, study: Study, setting: Altered) -> Grid:
@@ -61,7 +62,7 @@ def _grid(scene: Scene, study: Study, setting: Altered) -> Grid:
     register = scene.flow.program.register
     places: Integers = np.array([register.index(name) for name in (*names, *more)], dtype=np.int64)
     inputs = np.stack(columns, axis=-1) if columns else np.empty((len(old.times), 0))
-    return Grid(old.times, inputs, places)
+    return replace(old, inputs=inputs, columns=places)
 
 
 def _held(setting: Altered, name: str, grid: Grid) -> Array:

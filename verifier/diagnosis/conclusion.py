@@ -18,6 +18,9 @@ from verifier.report.report import Report, Standing
 
 SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
 
+PARTLY: Final = 0.6
+"""What explains less than this share of the error beyond noise is no explanation."""
+
 
 def nothing_to_tell(windows: int) -> Diagnosis:
     """For a trace that is too short."""
@@ -33,6 +36,7 @@ def nothing_to_tell(windows: int) -> Diagnosis:
 
 def concluded(
     selection: Selection,
+    share: float,
     candidates: tuple[Candidate, ...],
     moved: tuple[Refitted, ...],
     after: tuple[DepartureAfter, ...],
@@ -44,20 +48,30 @@ def concluded(
     departs = [each for each in after if each.standing is Standing.EXCEEDED]
     if not taken:
         return _unexplained(after, differs, report)
-    told = _told(selection, taken, departs)
-    said = [_opening(told, taken)]
+    told = _told(selection, share, taken, departs, differs)
+    said = [_opening(told, share, taken)]
     said += [each.sentence for each in taken]
     for step in selection.taken:
         rivals = [_name(each) for each in step.alike if each.matters]
         if rivals:
             said.append(f"{_name(step.tried[0])}: {sentences.either(rivals)}")
+    if selection.taken and share < PARTLY:
+        said.append(sentences.partly(share))
     said += [sentences.still(each) for each in after]
-    said += [each.sentence for each in differs[:1] if departs]
+    said += [each.sentence for each in differs[:1] if departs or share < PARTLY]
     said += [f"beside it, {each.sentence}" for each in moved if not each.is_moved]
     return told, tuple(said)
 
 
-def _told(selection: Selection, taken: list[Candidate], departs: list[DepartureAfter]) -> Told:
+def _told(
+    selection: Selection,
+    share: float,
+    taken: list[Candidate],
+    departs: list[DepartureAfter],
+    differs: tuple[DifferingRegion, ...],
+) -> Told:
+    if selection.taken and share < PARTLY:
+        return Told.STRUCTURE_DIFFERS if differs else Told.CANNOT_TELL
     if any(_is_open(step) for step in selection.taken):
         return Told.CANNOT_TELL
     if departs or any(each.kind not in SCALARS for each in taken):
@@ -75,11 +89,13 @@ def _name(tried: Tried) -> str:
     return label_of(tried.effect, tried.fitted.values[len(tried.fitted.values) - count :])
 
 
-def _opening(told: Told, taken: list[Candidate]) -> str:
+def _opening(told: Told, share: float, taken: list[Candidate]) -> str:
     names = ", ".join(each.label for each in taken)
     match told:
         case Told.SAME_STRUCTURE:
             return f"same structure, other numbers: {names}"
+        case _ if share < PARTLY:
+            return f"no candidate explains the departure well; the best is {names}"
         case Told.CANNOT_TELL:
             return f"several explanations are as good; the first is {names}"
         case _:

@@ -108,8 +108,9 @@ def _told(
     after = departures(results, report)
     differs = regions(results, units)
     found = candidates_of(scene, selection, report.confidence)
+    share = selection.share(scene) if best is None else 1.0
     if best is not None:
         found = (reading_of(program, best), *found)
     moved = told_of(numbers)
-    told, sentences = concluded(selection, found, moved, after, differs, report)
+    told, sentences = concluded(selection, share, found, moved, after, differs, report)
     return Diagnosis(told, sentences, moved, after, found, differs)

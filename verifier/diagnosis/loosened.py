@@ -44,13 +44,16 @@ def is_given_of(name: str) -> str:
     return f"is_given:{name}"
 
 
-def loosened_flow(program: Program) -> Flow:
-    """The flow of the loosened program."""
+def loosened_flow(program: Program, *, wraps: bool) -> Flow:
+    """The flow of the loosened program, whose parts saturate and have dead zones if `wraps`.
+
+    Both have the same register.
+    """
     source = Source.TABLES if program.field.formula is None else Source.FORMULA
-    return flow_of(loosened(program), source)
+    return flow_of(_loosened(program, is_wrapped=wraps), source)
 
 
-def loosened(program: Program) -> Program:
+def _loosened(program: Program, *, is_wrapped: bool) -> Program:
     """The program with the constants above; with a formula, its domains are wider, too."""
     field = program.field
     extra = [Constant(TIME_SCALE, ONE, 1.0, "", "")]
@@ -67,7 +70,9 @@ def loosened(program: Program) -> Program:
         return replace(program, constants=constants, field=_loosened_terms(field))
     formula = tuple(
         _loosened_code(
-            wrapped(code, tuple(w for w in wraps if w.name == name)), name, is_map=field.is_map
+            wrapped(code, tuple(w for w in wraps if w.name == name and is_wrapped)),
+            name,
+            is_map=field.is_map,
         )
         for code, name in zip(field.formula, field.driven, strict=True)
     )

@@ -52,7 +52,7 @@ def paths_of(scene: Scene, settings: list[Altered], starts: Array) -> Array:
     times = np.broadcast_to(scene.times, (lanes, *scene.times.shape))
     steps = scene.times.shape[1]
     flat = rk4(
-        scene.flow,
+        scene.flow_for(settings),
         starts.reshape(lanes * windows, n),
         np.ascontiguousarray(times.reshape(lanes * windows, steps)),
         inputs.reshape(lanes * windows, steps - 1, len(columns)),

@@ -15,10 +15,12 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.flow import Flow
+from runtime.integrators import rk4
 from runtime.program import Kind, Program
 from verifier.diagnosis.altered import Altered, Seen
-from verifier.diagnosis.courses import Course
+from verifier.diagnosis.courses import Course, means
 from verifier.diagnosis.loosened import loosened_flow
+from verifier.diagnosis.wraps import is_wrap
 from verifier.fidelity.shooting.plan import Plan
 from verifier.fidelity.shooting.samples import Samples, edges, measured_states
 from verifier.fidelity.shooting.study import Study
@@ -38,6 +40,11 @@ FEWEST: Final = 4
 """With fewer samples of a state a window tells nothing."""
 STEPS: Final = 20
 """Integration steps to a horizon, at least."""
+HALVINGS: Final = 5
+ACCURACY: Final = 0.1
+"""Halved steps may move a prediction by this share of the noise,"""
+FINEST: Final = 1e-4
+"""which counts as at least this share of the domain."""
 
 
 @final
@@ -66,12 +73,14 @@ class Observed:
 class Scene:
     """All that trying an explanation needs.
 
-    times: (W, S + 1) integration knots; a short window repeats its last one. start: (W, n).
+    flow, wrapped: without and with parts that saturate or have dead zones. times: (W, S + 1)
+    integration knots; a short window repeats its last one. start: (W, n).
     plain: the setting in which all is as the spec and the log say.
     """
 
     program: Program
     flow: Flow
+    wrapped: Flow
     needs: Needs
     times: Array
     start: Array
@@ -84,16 +93,42 @@ class Scene:
         """How many there are."""
         return len(self.times)
 
+    def flow_for(self, settings: list[Altered]) -> Flow:
+        """The plain flow, unless some part of the formula saturates or has a dead zone."""
+        is_wrapped = any(is_wrap(name) for s in settings for name in s.register)
+        return self.wrapped if is_wrapped else self.flow
+
 
 def scene_of(program: Program, study: Study) -> Scene:
-    """The windows of a study, for its program loosened."""
+    """The windows of a study, for its program loosened, in steps that are fine enough."""
+    step = study.plan.windows.horizon / STEPS
+    scene = _scene(program, study, step)
+    for _ in range(0 if program.field.is_map or scene.windows == 0 else HALVINGS):
+        step /= 2.0
+        finer = _scene(program, study, step)
+        if _is_close(scene, finer):
+            break
+        scene = finer
+    return scene
+
+
+def _is_close(scene: Scene, finer: Scene) -> bool:
+    """Whether halved steps move no prediction by more than a share of the noise."""
+    one, other = (predicted_ends(each) for each in (scene, finer))
+    moved = np.nanmax(np.abs(one - other), axis=0, initial=0.0)
+    allowed = [max(each.floor, FINEST * each.width) for each in scene.observed]
+    return bool(np.all(moved <= ACCURACY * np.array(allowed)))
+
+
+def _scene(program: Program, study: Study, step: float) -> Scene:
+    """With no step above `step` (s)."""
     plan, horizon = study.plan, study.plan.windows.horizon
     changes = _changes(program, plan.needs)
     jumps = any(guard.resets for guard in program.field.guards)
     spans = _cut(study.segments.spans, changes) if jumps else study.segments.spans
     rows = [_chosen(plan, low, high) for low, high in _windows(spans, horizon)]
     rows = [row for row in rows if all(len(each) >= FEWEST for each in row)]
-    knots = [_knots(plan, row, _step(plan), changes) for row in rows]
+    knots = [_knots(plan, row, step, changes) for row in rows]
     times = _padded(knots)
     observed = tuple(
         _observed(each, [row[j] for row in rows], times, study.noise[j].sigma)
@@ -101,7 +136,8 @@ def scene_of(program: Program, study: Study) -> Scene:
     )
     return Scene(
         program=program,
-        flow=loosened_flow(program),
+        flow=loosened_flow(program, wraps=False),
+        wrapped=loosened_flow(program, wraps=True),
         needs=plan.needs,
         times=times,
         start=_starts(plan, times[:, 0]) if rows else np.empty((0, plan.model.states)),
@@ -109,13 +145,6 @@ def scene_of(program: Program, study: Study) -> Scene:
         plain=_plain(plan, observed),
         horizon=horizon,
     )
-
-
-def _step(plan: Plan) -> float:
-    """The longest step of the grid that was found accurate enough, gaps apart."""
-    most = plan.windows.horizon / STEPS
-    steps = np.diff(plan.model.grid.times)
-    return float(np.max(steps[steps <= most * (1.0 + 1e-6)], initial=most / 16.0))
 
 
 def _windows(spans: Array, horizon: float) -> list[tuple[float, float]]:
@@ -223,3 +252,19 @@ def _plain(plan: Plan, observed: tuple[Observed, ...]) -> Altered:
                 courses[each.name] = Course(grid.times, grid.inputs[:, column])
     register = {each.name: each.value for each in plan.needs.inputs if each.series is None}
     return Altered(register, courses, {each.name: Seen() for each in observed})
+
+
+def predicted_ends(scene: Scene) -> Array:
+    """The predicted states (W, D) at the end of each window, from measured starts."""
+    courses = scene.plain.courses
+    names = [*courses, *scene.plain.register]
+    columns = np.array([scene.flow.program.register.index(n) for n in names], dtype=np.int64)
+    steps = scene.times[:, :-1].shape
+    told = [
+        means(courses[n], scene.times) if n in courses else np.full(steps, scene.plain.register[n])
+        for n in names
+    ]
+    inputs = np.stack(told, axis=-1) if told else np.empty((*steps, 0))
+    low, high = scene.flow.domain[:, columns]
+    paths = rk4(scene.flow, scene.start, scene.times, np.clip(inputs, low, high), columns)
+    return np.asarray(paths[:, -1, [each.column for each in scene.observed]])

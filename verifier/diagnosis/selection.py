@@ -17,6 +17,7 @@ from verifier.diagnosis.fitting import (
     correlation_time,
     extended,
     fit,
+    intervals_of,
     left_of_starts,
     objective,
     plain_fit,
@@ -26,6 +27,7 @@ from verifier.diagnosis.heldout import Scored, scored
 from verifier.diagnosis.profiled import profiled
 from verifier.diagnosis.residuals import owners
 from verifier.diagnosis.scene import Scene
+from verifier.fidelity.judging.departure import CONFIDENCE
 
 MOST: Final = 5
 """So many are taken, at most."""
@@ -85,6 +87,13 @@ class Selection:
         """The rounds whose best was taken in and not dropped again."""
         kept = {effect.label for effect in self.final.effects}
         return tuple(s for s in self.steps if s.is_taken and s.tried[0].effect.label in kept)
+
+    def share(self, scene: Scene) -> float:
+        """The share of the squared error beyond noise that all that was taken explains."""
+        floor = np.array([each.floor for each in scene.observed]) ** 2
+        before, after = self.plain.sigma**2, self.final.sigma**2
+        beyond = float(np.sum(np.maximum(before - floor, 0.0) / after))
+        return min(float(np.sum((before - after) / after)) / max(beyond, 1e-300), 1.0)
 
 
 def select(scene: Scene, effects: tuple[Effect, ...], tolerance: dict[str, float]) -> Selection:
@@ -249,8 +258,18 @@ def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:
     head = same[0]
     alike = [t for t in order if t not in same and top.gain - t.gain < CLOSE]
     rest = [t for t in order if t is not head]
-    is_taken = head.gain >= CLEAR and head.matters
+    is_taken = head.gain >= CLEAR and head.matters and _is_sure(scene, head)
     return Step((head, *rest), tuple(same[1:]), tuple(alike), is_taken=is_taken)
+
+
+def _is_sure(scene: Scene, tried: Tried) -> bool:
+    """Whether some number of it is surely not where it changes nothing."""
+    numbers = tried.effect.numbers
+    intervals = intervals_of(scene, tried.fitted, CONFIDENCE)[-len(numbers) :] if numbers else ()
+    return not numbers or any(
+        not interval.low <= number.neutral <= interval.high
+        for number, interval in zip(numbers, intervals, strict=True)
+    )
 
 
 def _are_same(scene: Scene, one: Tried, other: Tried, base: Fit) -> bool:

@@ -88,6 +88,11 @@ def evidence(share: float, before: tuple[str, ...]) -> str:
     return f"it explains {percent(max(share, 0.0))} of {what} in windows that it was not fitted to"
 
 
+def partly(share: float) -> str:
+    """An explanation that leaves most of it open."""
+    return f"that is {percent(max(share, 0.0))} of the error beyond noise; the rest is unexplained"
+
+
 def either(labels: list[str]) -> str:
     """Explanations that are as good."""
     shown = labels[:MOST]

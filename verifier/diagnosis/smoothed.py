@@ -66,7 +66,7 @@ def rates_of(scene: Scene, along: Smoothed, setting: Altered) -> Array:
     edges = np.append(along.times, 2.0 * along.times[-1] - along.times[-2])
     for name, course in setting.courses.items():
         register[:, names.index(name)] = means(course, edges - 0.5 * (edges[1] - edges[0]))
-    found = run_tape(scene.flow.tape, register)
+    found = run_tape(scene.flow_for([setting]).tape, register)
     good = np.all(np.isfinite(found), axis=1)
     if not np.any(good):
         return np.zeros_like(found)

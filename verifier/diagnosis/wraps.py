@@ -43,6 +43,11 @@ class Wrap:
         return f"zone:{self.key}"
 
 
+def is_wrap(name: str) -> bool:
+    """Whether this entry of the register belongs to a wrap."""
+    return name.startswith(("limit:", "zone:"))
+
+
 def wraps_of(program: Program) -> tuple[Wrap, ...]:
     """The parts of the formula; none where there is only a table."""
     found: list[Wrap] = []
