@@ -25,7 +25,7 @@ from verifier.fidelity.stretches.needs import Needs, held, needs_of, parts_of
 from verifier.fidelity.stretches.segments import Segments, on_circle, segments_of
 from verifier.fidelity.stretches.spans import contains, length, merge
 from verifier.fidelity.switching.judge import switching_of
-from verifier.fidelity.switching.verdict import with_switching, with_told_times
+from verifier.fidelity.switching.verdict import with_switching
 from verifier.report.report import (
     CellAxis,
     Coverage,
@@ -63,10 +63,10 @@ def judged(program: Program, trace: Trace) -> tuple[Report, Study | None]:
     absent = not_told(needs)
     if absent:
         return _unjudged(program, trace, fidelity, None, absent), None
-    switching = switching_of(program, needs, fidelity)
-    if switching is None:
+    found = switching_of(program, needs, fidelity)
+    if found is None:
         return _compared(program, trace, fidelity, needs)
-    told = with_told_times(program, needs, switching)
+    switching, told = found
     report, study = _compared(program, trace, fidelity, told)
     return with_switching(report, switching, needs), study
 

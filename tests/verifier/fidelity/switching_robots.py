@@ -143,3 +143,38 @@ def with_mode(drive: Trace, name: str, times: Array, values: Array) -> Trace:
     """The same log with another series of the mode."""
     series = Series(name, times, values, f"/{name}", "sensor")
     return Trace(drive.source, drive.series | {name: series}, drive.constants, drive.start, (), ())
+
+
+def ball_log(keep: float, floor: float, seconds: float, seed: int) -> Trace:
+    """A ball that bounces off `floor` with the share `keep` of its speed, measured at 100 Hz."""
+    fall = Leave(
+        lambda s: floor - s[0] if s[1] < 0.0 else -1.0, "flight", lambda s: [s[0], -keep * s[1]]
+    )
+    robot = Robot({"flight": lambda _, s: [s[1], -9.81]}, {"flight": [fall]})
+    times = np.arange(0.0, seconds, 0.01)
+    height = 2.0 + 0.3 * np.random.default_rng(seed).random()
+    ran = run(robot, "flight", [height, 0.0], times)
+    drive = log(("x", "v"), ran, times, {"x": 0.005, "v": 0.03}, seed, ("mode", ("flight",)), e=0.9)
+    return Trace(
+        "ball.mcap", {n: drive.series[n] for n in ("x", "v")}, drive.constants, 0.0, (), ()
+    )
+
+
+def thermostat_log(seed: int, off: float = 22.0, k: float = 0.1) -> Trace:
+    """Heating towards 40 at rate k until `off`, cooling towards 10 until 20, for 80 s at 20 Hz.
+
+    The mode is logged five times a second.
+    """
+    robot = Robot(
+        {"heat": lambda _, s: [k * (40.0 - s[0])], "cool": lambda _, s: [k * (10.0 - s[0])]},
+        {
+            "heat": [Leave(lambda s: s[0] - off, "cool")],
+            "cool": [Leave(lambda s: 20.0 - s[0], "heat")],
+        },
+    )
+    times = np.arange(0.0, 80.0, 0.05)
+    start = 20.0 + 2.0 * np.random.default_rng(seed).random()
+    ran = run(robot, "heat", [start], times)
+    drive = log(("T",), ran, times, {"T": 0.05}, seed, ("mode", ("heat", "cool")), k=k)
+    mode = drive.series["mode"]
+    return with_mode(drive, "mode", mode.times[::4], mode.values[::4])

@@ -8,7 +8,18 @@ import pytest
 
 from runtime.program import Fidelity, Program
 from specc.loading import load_program
-from tests.verifier.fidelity.switching_robots import Leave, Patrol, Robot, patrol_log, with_mode
+from tests.runtime import hybrids
+from tests.verifier.fidelity.switching_robots import (
+    Leave,
+    Patrol,
+    Robot,
+    ball_log,
+    log,
+    patrol_log,
+    run,
+    thermostat_log,
+    with_mode,
+)
 from verifier.fidelity.switching.judge import switching_in
 from verifier.fidelity.verify import verify
 from verifier.report.report import Report, Standing, VariableResult, Verdict
@@ -257,3 +268,109 @@ def test_at_the_tolerance_itself_neither_verdict_is_common(patrol: Program) -> N
     # Both are to come in at most 2.5 % of cases; 4 or more of 30 would have a chance of 1 %.
     assert standings.count(Standing.WITHIN) < 4
     assert standings.count(Standing.EXCEEDED) < 4
+
+
+@pytest.fixture(scope="module")
+def thermostat() -> Program:
+    return judged_by(hybrids.thermostat(), {"T": 0.4}, 4.0)
+
+
+def test_a_thermostat_is_judged_through_stays_shorter_than_the_horizon(
+    thermostat: Program,
+) -> None:
+    faithful = verify(thermostat, thermostat_log(1))
+    late = thermostat_log(2, off=22.8)
+    report, found = verify(thermostat, late), switching(thermostat, late)
+
+    assert faithful.verdict is Verdict.PASS
+    assert of(faithful, "T").declared.windows > 30
+    assert report.verdict is Verdict.FAIL
+    assert of(report, "T").standing is not Standing.EXCEEDED
+    timing = way(found, "heat").timing
+    assert timing is not None
+    # T = 40 - 18 exp(-0.1 t) after 22: it takes 0.4545 s to 22.8.
+    assert timing.late == pytest.approx(10.0 * np.log(18.0 / 17.2), abs=0.03)
+
+
+def test_a_mode_logged_as_seldom_as_it_changes_decides_nothing(thermostat: Program) -> None:
+    drive = thermostat_log(3, k=0.5)
+
+    found = switching(thermostat, drive)
+
+    assert found.standing is Standing.UNDECIDED
+    assert verify(thermostat, drive).verdict is Verdict.INCONCLUSIVE
+
+
+def test_a_ball_bounces_although_no_log_shows_it() -> None:
+    spec = judged_by(hybrids.bouncing_ball(), {"x": 0.05, "v": 0.1}, 0.5)
+
+    report = verify(spec, ball_log(0.9, 0.0, 6.0, 1))
+    found = switching(spec, ball_log(0.9, 0.0, 6.0, 1))
+
+    assert report.verdict is Verdict.PASS
+    # It falls for sqrt(2 h / g), and from then on every flight takes 2 v / g.
+    height = 2.0 + 0.3 * np.random.default_rng(1).random()
+    first, speed = np.sqrt(2.0 * height / 9.81), np.sqrt(2.0 * 9.81 * height)
+    bounces = first + np.concatenate(
+        [[0.0], np.cumsum(2.0 * speed * 0.9 ** np.arange(1, 5) / 9.81)]
+    )
+    times = [each.time for each in found.switches]
+    assert times[:5] == pytest.approx(bounces, abs=0.005)
+
+
+def test_a_ball_that_loses_more_speed_fails_by_its_reset() -> None:
+    spec = judged_by(hybrids.bouncing_ball(), {"x": 0.05, "v": 0.1}, 0.5)
+
+    drive = ball_log(0.81, 0.0, 3.2, 2)
+    found = switching(spec, drive)
+
+    assert verify(spec, drive).verdict is Verdict.FAIL
+    jump = next(jump for jump in found.ways[0].jumps if jump.name == "v")
+    assert jump.standing is Standing.EXCEEDED
+    assert jump.error < -0.2
+
+
+def test_a_ball_that_bounces_off_a_shelf_fails_by_its_time() -> None:
+    spec = judged_by(hybrids.bouncing_ball(), {"x": 0.05, "v": 0.1}, 0.5)
+
+    found = switching(spec, ball_log(0.9, 0.1, 6.0, 3))
+
+    timing = found.ways[0].timing
+    assert timing is not None
+    assert timing.standing is Standing.EXCEEDED
+    assert all(jump.standing is not Standing.EXCEEDED for jump in found.ways[0].jumps)
+
+
+@pytest.mark.parametrize(("beyond", "verdict"), [(0.0, Verdict.PASS), (0.08, Verdict.FAIL)])
+def test_a_patrol_that_takes_time_to_turn_is_judged_in_all_its_modes(
+    beyond: float, verdict: Verdict
+) -> None:
+    spec = judged_by(load_program(SPECS / "patrol_turning.yaml"), {"x": 0.05, "v": 0.1}, 1.0)
+    names = ("forward", "turning_back", "back", "turning_forward")
+    robot = Robot(
+        {
+            "forward": lambda _, s: [s[1], 2.0 * (0.5 - s[1])],
+            "turning_back": lambda _, s: [s[1], -2.0],
+            "back": lambda _, s: [s[1], 2.0 * (-0.5 - s[1])],
+            "turning_forward": lambda _, s: [s[1], 2.0],
+        },
+        {
+            "forward": [Leave(lambda s: s[0] - 1.2 - beyond, "turning_back")],
+            "turning_back": [Leave(lambda s: -0.5 - s[1], "back")],
+            "back": [Leave(lambda s: -1.2 - s[0], "turning_forward")],
+            "turning_forward": [Leave(lambda s: s[1] - 0.5, "forward")],
+        },
+    )
+    times = np.arange(0.0, 120.0, 0.05)
+    told = {"x1": 1.2, "x2": -1.2, "v1": 0.5, "v2": 0.5, "a": 2.0}
+    ran = run(robot, "forward", [0.0, 0.5], times)
+    drive = log(("x", "v"), ran, times, {"x": 0.01, "v": 0.02}, 4, ("going", names), **told)
+
+    report, found = verify(spec, drive), switching(spec, drive)
+
+    assert report.verdict is verdict
+    assert way(found, "turning_back").expected > 8
+    assert way(found, "turning_back").standing is Standing.WITHIN
+    timing = way(found, "forward").timing
+    assert timing is not None
+    assert timing.late == pytest.approx(beyond / 0.5, abs=0.02)

@@ -10,12 +10,15 @@ from typing import final
 
 import numpy as np
 
-from runtime.arrays import Array, Integers
+from runtime.arrays import Array, Booleans, Integers
 from verifier.traces.trace import Series
 
-EVENTS = 0.5
+EVENTS = 0.9
 """A series in which more than this share of the samples differ from the one before is a log of
 changes."""
+
+INSIDE = 1e-3
+"""A change stays this share of its doubt away from the samples beside it."""
 
 
 @final
@@ -88,6 +91,23 @@ def halved(series: Series) -> Series:
     times = np.array(series.times)
     times[found] -= (times[found] - times[found - 1]) / 2.0
     return replace(series, times=times)
+
+
+def told(series: Series, times: Array, is_sure: Booleans) -> Series:
+    """The series with its changes at `times` (K,), without any doubt where they are sure.
+
+    Such a change has a sample of the old mode right before it.
+    """
+    found, changes = _differing(series), changes_in(series)
+    margin = INSIDE * changes.doubt
+    at = np.clip(times, changes.since + margin, changes.until - margin)
+    moved = np.array(series.times)
+    moved[found] = at
+    doubted = is_sure & (changes.doubt > 0.0)
+    extra, before = at[doubted] - margin[doubted] / 2.0, series.values[found - 1][doubted]
+    order = np.argsort(np.concatenate([moved, extra]), kind="stable")
+    values = np.concatenate([series.values, before])
+    return replace(series, times=np.concatenate([moved, extra])[order], values=values[order])
 
 
 def _differing(series: Series) -> Integers:

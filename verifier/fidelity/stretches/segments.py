@@ -4,8 +4,9 @@ A stretch is cut where a needed series has a gap (longer than five of its median
 half a second), where `judge_when` is false, where a variable is outside its domain, where the mode
 switches, since states may jump there, and where what is left is shorter than the horizon.
 
-A switch does not cut beside a stay that is too short for windows of its own: there windows go on
-through the switch, at the time at which the robot took it, with the jump that the spec gives it.
+A switch does not cut beside a stay that is too short for windows of its own, if its time is known
+well enough: there windows go on through the switch, at the time at which the robot took it, with
+the jump that the spec gives it.
 """
 
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ GAP_PERIODS = 5.0
 GAP_SECONDS = 0.5
 STAY = 1.5
 """A stay in a mode that is shorter than so many horizons is too short for windows of its own."""
+SURE = 1e-3
+"""The time of a switch is known well enough within this share of the horizon."""
 EDGE = 1e-9
 """How far beyond its domain, as a share of it, a value may be by rounding."""
 
@@ -112,7 +115,8 @@ def _switches(
     is_short = np.diff(ends) < STAY * horizon
     ways = {(guard.mode, guard.target) for guard in program.field.guards}
     declared = [way in ways for way in zip(changes.left, changes.entered, strict=True)]
-    cuts = ~((is_short[:-1] | is_short[1:]) & np.array(declared))
+    is_sure = changes.doubt <= SURE * horizon
+    cuts = ~((is_short[:-1] | is_short[1:]) & np.array(declared) & is_sure)
     period = period_of(needs.series[needs.base].times)
     since = np.minimum(changes.since, changes.until - period)
     holes = np.column_stack([since, changes.until])[cuts]

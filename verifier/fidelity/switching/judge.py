@@ -11,6 +11,7 @@ from verifier.fidelity.switching.means import Mean, standings_of
 from verifier.fidelity.switching.setting import Setting, setting_of
 from verifier.fidelity.switching.sorting import missed_switches, sorted_switches
 from verifier.fidelity.switching.stays import stays_of
+from verifier.fidelity.switching.told import needs_told
 from verifier.fidelity.switching.ways import Compared, WayMeans, means_of
 from verifier.report.report import Standing
 from verifier.report.switching import Jump, Switch, Switching, SwitchSort, Timing, Way
@@ -28,33 +29,37 @@ def switching_in(program: Program, trace: Trace) -> Switching | None:
     needs = needs_of(program, trace)
     if program.fidelity is None or needs.missing or not needs.driven:
         return None
-    return switching_of(program, needs, program.fidelity)
+    found = switching_of(program, needs, program.fidelity)
+    return None if found is None else found[0]
 
 
-def switching_of(program: Program, needs: Needs, fidelity: Fidelity) -> Switching | None:
+def switching_of(
+    program: Program, needs: Needs, fidelity: Fidelity
+) -> tuple[Switching, Needs] | None:
     """The judgement of all changes of mode; None for a program without ways out of modes.
 
-    needs: with every predicted state in the trace, perhaps without the mode: then the sentences
-    say that nothing can be said.
+    Also the needs, with the changes at the times that the states tell. `needs` holds every
+    predicted state, perhaps without the mode: then the sentences say that nothing can be said.
     """
     if not program.field.guards:
         return None
     mode = mode_of(program, needs)
     if mode is not None and not mode.is_known:
         reason, advice = sentences.not_logged(program)
-        return Switching(program.field.mode, (), (), Standing.UNDECIDED, (reason,), (advice,))
+        untold = Switching(program.field.mode, (), (), Standing.UNDECIDED, (reason,), (advice,))
+        return untold, needs
     setting = setting_of(program, needs, fidelity)
     stays = stays_of(setting)
     missed = tuple(missed_switches(setting, stays))
     if len(setting.changes) == 0:
-        ways = _ways(setting, (), missed)
-        return _switching(setting, ways, missed)
+        return _switching(setting, _ways(setting, (), missed), missed), needs
     arrivals = arrivals_of(setting, stays)
     jumps = jumps_of(setting, stays, arrivals.guards)
     switches = sorted_switches(setting, stays, arrivals, jumps)
     means = means_of(Compared(setting, arrivals, jumps, switches))
     every = tuple(sorted((*switches, *missed), key=lambda each: each.time))
-    return _switching(setting, _ways(setting, means, every), every)
+    judgement = _switching(setting, _ways(setting, means, every), every)
+    return judgement, needs_told(program, needs, setting, jumps)
 
 
 def _ways(

@@ -153,14 +153,16 @@ def _shifts(
     """When each change came after the middle of its `doubt` (K,), and the variance of that.
 
     found: errors (K, D), their covariances and slopes. Least squares over the states that go on,
-    with the doubt as a prior.
+    not held within the doubt, which would pull a mean that is taken over many. Where they tell
+    less than the stamps do, the stamps count.
     """
     error, covariance, slope = found
     shift, variance = np.zeros(len(doubt)), doubt**2 / 12.0
     for k in np.flatnonzero(doubt > 0.0):
         on = ~is_reset[k] & np.isfinite(error[k]) & np.isfinite(slope[k])
         weighed = np.linalg.solve(covariance[k][np.ix_(on, on)], slope[k][on])
-        variance[k] = 1.0 / (float(weighed @ slope[k][on]) + 12.0 / doubt[k] ** 2)
-        wanted = -variance[k] * float(weighed @ error[k][on])
-        shift[k] = np.clip(wanted, -doubt[k] / 2.0, doubt[k] / 2.0)
+        told = float(weighed @ slope[k][on])
+        if told * variance[k] > 1.0:
+            variance[k] = 1.0 / told
+            shift[k] = np.clip(-float(weighed @ error[k][on]) / told, -doubt[k], doubt[k])
     return shift, variance

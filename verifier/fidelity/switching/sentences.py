@@ -101,7 +101,10 @@ def _open(way: Way) -> list[str]:
         if j.standing is Standing.UNDECIDED
     ]
     if way.expected and way.timing is None:
-        found.append(f"no switch {name} could be timed")
+        found.append(
+            f"the robot went {name} {_times(way.expected)}, but that could not be timed: too few"
+            " samples lie between its switches"
+        )
     return found
 
 

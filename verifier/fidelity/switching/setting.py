@@ -3,7 +3,7 @@
 K: changes; n: states; D: predicted states; S: steps; G: knots of the grid.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
@@ -18,7 +18,7 @@ from verifier.fidelity.shooting.noise import noise_of
 from verifier.fidelity.shooting.prediction import Model
 from verifier.fidelity.shooting.samples import Samples, samples_of
 from verifier.fidelity.stretches.changes import Changes
-from verifier.fidelity.stretches.needs import Needs, changes_of, period_of
+from verifier.fidelity.stretches.needs import Input, Needs, changes_of, period_of
 from verifier.fidelity.stretches.segments import spans_between_exclusions
 from verifier.fidelity.stretches.spans import without
 
@@ -82,6 +82,9 @@ class Setting:
 
 def setting_of(program: Program, needs: Needs, fidelity: Fidelity) -> Setting:
     """The setting; `needs` holds the measured mode."""
+    base = period_of(needs.series[needs.base].times)
+    lead = max(LEAD * fidelity.horizon, FEWEST * base)
+    needs = replace(needs, inputs=tuple(_calmed(each, lead) for each in needs.inputs))
     grid = flow_grid(needs, fidelity.horizon / STEPS)
     flow = flow_of(program)
     samples = samples_of(needs, grid, 0.0)
@@ -89,7 +92,6 @@ def setting_of(program: Program, needs: Needs, fidelity: Fidelity) -> Setting:
     spans = spans_between_exclusions(program, needs)
     quiet = without(spans, np.column_stack([changes.since, changes.until]))
     noise = noise_of(Model(in_one_mode(flow), grid), samples, quiet)
-    base = period_of(needs.series[needs.base].times)
     return Setting(
         model=Model(flow, grid),
         samples=samples,
@@ -98,8 +100,20 @@ def setting_of(program: Program, needs: Needs, fidelity: Fidelity) -> Setting:
         spans=spans,
         tolerance=np.array([fidelity.tolerance.get(s.state.name, np.inf) for s in samples]),
         horizon=fidelity.horizon,
-        lead=max(LEAD * fidelity.horizon, FEWEST * base),
+        lead=lead,
     )
+
+
+def _calmed(given: Input, lead: float) -> Input:
+    """A sensed-only input averaged over `lead` seconds: its noise alone would open guards."""
+    if given.series is None or not given.is_noisy:
+        return given
+    series = given.series
+    width = min(len(series.times), max(1, round(lead / period_of(series.times))))
+    kernel = np.ones(width)
+    count = np.convolve(np.ones(len(series.times)), kernel, "same")
+    values = np.convolve(series.values, kernel, "same") / count
+    return replace(given, series=replace(series, values=values))
 
 
 def run(setting: Setting, start: Array, knots: Integers, modes: Array) -> Array:

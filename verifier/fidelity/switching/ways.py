@@ -1,5 +1,6 @@
 """Each way of the spec: its times and its jumps, averaged over all switches that took it."""
 
+import math
 from dataclasses import dataclass
 from typing import final
 
@@ -8,7 +9,7 @@ import numpy as np
 from runtime.arrays import Integers
 from verifier.fidelity.switching.arrivals import Arrivals
 from verifier.fidelity.switching.jumps import Jumps
-from verifier.fidelity.switching.means import Mean, mean_of
+from verifier.fidelity.switching.means import FEWEST, Mean, mean_of
 from verifier.fidelity.switching.setting import Setting
 from verifier.report.switching import Switch, SwitchSort
 from verifier.report.wording import listed, quantity
@@ -55,6 +56,8 @@ def _means(compared: Compared, guard: int) -> WayMeans:
     )
     timed = np.isfinite(late) & np.isfinite(allowed) & (allowed > 0.0)
     bias = _bias(compared, taken[timed], guard)
+    if _is_crowded(compared, guard, int(np.sum(timed))):
+        return WayMeans(guard, None, "", 0.0, ())
     mean = None
     if np.any(timed):
         # In shares of what each may be late by: guards are not always approached equally fast.
@@ -72,6 +75,18 @@ def _means(compared: Compared, guard: int) -> WayMeans:
     )
 
 
+def _is_crowded(compared: Compared, guard: int, timed: int) -> bool:
+    """Whether most switches came too soon after the one before to be compared.
+
+    Which of them can be depends on when they came, so that those are no fair sample.
+    """
+    setting = compared.setting
+    before = np.concatenate([[-np.inf], setting.changes.until[:-1]])
+    is_short = setting.changes.since - before < setting.lead
+    able = compared.arrivals.is_good
+    return int(np.sum(is_short & ~able & (compared.arrivals.guards == guard))) > timed
+
+
 def _jumps(compared: Compared, able: Integers, bias: float) -> list[tuple[int, Mean]]:
     setting, jumps = compared.setting, compared.jumps
     found = []
@@ -87,16 +102,19 @@ def _bias(compared: Compared, taken: Integers, guard: int) -> float:
     """What the stamps of the mode may do to a mean, however many switches it is of.
 
     The doubt of a stamp averages out where switches fall anywhere between two of them. The
-    resultant length of their phases, without what chance makes of it, says how far they do not.
+    resultant length of their phases, without what chance makes of it and with what noise takes
+    from it, says how far they do not. Where states tell the time, stamps do nothing.
     """
     doubt = compared.setting.changes.doubt[taken]
-    if len(taken) < 2 or not np.all(doubt > 0.0):
+    by_stamp = compared.jumps.shift_variance[taken] * 12.0 >= doubt**2 * (1.0 - 1e-9)
+    if len(taken) < FEWEST or not np.all(doubt > 0.0) or not np.any(by_stamp):
         return 0.0
-    phases = np.exp(2j * np.pi * compared.arrivals.opened[taken, guard] / doubt)
-    count = len(taken)
-    square = (count * abs(np.mean(phases)) ** 2 - 1.0) / (count - 1.0)
-    left = compared.jumps.shift_variance[taken] * 12.0 / doubt**2
-    return float(np.sqrt(max(square, 0.0)) * np.mean(left * doubt / 2.0))
+    arrivals, count = compared.arrivals, len(taken)
+    phases = np.exp(2j * np.pi * arrivals.opened[taken, guard] / doubt)
+    square = max((count * abs(np.mean(phases)) ** 2 - 1.0) / (count - 1.0), 0.0)
+    blur = 2.0 * math.pi * float(np.mean(arrivals.doubt[taken] / arrivals.speed[taken] / doubt))
+    locked = min(1.0, math.sqrt(square) * math.exp(min(blur**2 / 2.0, 300.0)))
+    return float(locked * np.mean(by_stamp * doubt / 2.0))
 
 
 def _basis(compared: Compared, guard: int, allowed: float) -> str:
