@@ -14,6 +14,7 @@ from spec_schema.expect import ClaimOptions, ClaimSpec
 from spec_schema.load import Loaded
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean
+from spec_schema.wording import with_article
 
 REPELS: Final = frozenset(
     {
@@ -141,6 +142,6 @@ def _check_references(
         remedy = did_you_mean(sentence.goes_to, names) or "name one with `called: home`"
         findings.error("S274", path, message, remedy, key=True)
     elif meant[-1].feature in REPELS:
-        message = f"nothing goes to a {meant[-1].feature} but single trajectories"
+        message = f"nothing goes to {with_article(meant[-1].feature)} but single trajectories"
         remedy = "write what attracts: a stable focus, a stable cycle, an attractor"
         findings.error("S274", path, message, remedy, key=True)

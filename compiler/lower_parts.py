@@ -30,6 +30,7 @@ from spec_schema.places import Path
 from spec_schema.trace_mapping import TraceEntry
 from spec_schema.units import Unit as SpecUnit
 from spec_schema.units import parse_unit
+from spec_schema.wording import number
 
 
 def code_of(expr: Expr) -> Code:
@@ -95,13 +96,11 @@ def lower_fidelity(
 
 def _positive(value: float | str, unit: SpecUnit | None, path: Path, findings: Findings) -> float:
     found = si_value(value, unit, path, findings)
-    if found is not None and found <= 0.0:
-        findings.error(
-            "S212",
-            path,
-            f"the {path[1]}{_of(path)} must be positive (got {value})",
-            "write how much",
-        )
+    if found is not None and unit is not None and found <= 0.0:
+        shown = value if isinstance(value, str) else number(value)
+        message = f"the {path[1]}{_of(path)} must be positive (got {shown})"
+        suffix = "" if unit.text == "1" else f", in {unit.text}"
+        findings.error("S212", path, message, f"write a number above 0{suffix}")
     return found or 1.0
 
 

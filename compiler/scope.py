@@ -56,6 +56,7 @@ def checked(
     """The tree of an expression whose dimension must be that of `wanted` (None: any)."""
     expr = read(text, path, scope, findings)
     if expr is None:
+        _tell_dimensions(text, path, scope, findings)
         return None
     known = {n: scope.dimensions[n] for n in names_in(expr)}
     dimensions = {name: dimension for name, dimension in known.items() if dimension is not None}
@@ -70,6 +71,17 @@ def checked(
         message = f"{what} is in {describe(dimension)}, and {like(wanted)} is wanted"
         findings.error("S211", path, message, "multiply by a constant that has the missing unit")
     return expr
+
+
+def _tell_dimensions(text: str, path: Path, scope: Scope, findings: Findings) -> None:
+    """What is wrong with the known names of an expression that reads an unknown one as well."""
+    try:
+        expr = parse(text)
+    except ExpressionError:
+        return
+    known = {n: d for n in names_in(expr) if (d := scope.dimensions.get(n)) is not None}
+    for fault in dimension_of(expr, known)[1]:
+        findings.fault(path, fault)
 
 
 def wanted_of(name: str, declared: Declarations, *, is_map: bool) -> Unit | None:

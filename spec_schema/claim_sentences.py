@@ -48,6 +48,9 @@ _WORD: Final = re.compile(r"\S+")
 _SHARE: Final = re.compile(r"(\d{1,3}(?:\.\d{1,9})?) ?%")
 _NAME: Final = re.compile(r"[A-Za-z_]\w{0,63}", re.ASCII)
 _OF_THE_DOMAIN: Final = ("of", "the", "domain", "goes", "to")
+_ARTICLES: Final = frozenset({"a", "an", "the"})
+_PERCENT: Final = frozenset({"percent", "per", "pct", "%"})
+_LINKS: Final = frozenset({"and", "or", "plus", "&"})
 _EXAMPLES: Final = "`one stable cycle`, `no other attractor`, `at least two saddles`"
 
 
@@ -126,6 +129,10 @@ def _count(words: "_Words", bound: str | None) -> int:
     shown = quoted(word) if word else "the end"
     what = f"after {quoted(bound)} comes a number" if bound else "a claim begins with how many"
     remedy = did_you_mean(word, beginnings) or f"write e.g. {_EXAMPLES}"
+    if word in _ARTICLES:
+        remedy = "write `one` instead"
+    elif found := _SHARE.fullmatch(word):
+        remedy = _share_of_domain(found[1])
     raise SentenceError(Fault(start, end, "S271", f"{what}, not {shown}", remedy))
 
 
@@ -206,8 +213,17 @@ class _Words:
                 self.step()
             elif matched in _PHRASES:
                 return _PHRASES[matched]
+            elif not matched and word in _PERCENT:
+                raise SentenceError(self._unshared(word, start, end))
             else:
                 raise SentenceError(_unknown(word, start, end, matched, following))
+
+    def _unshared(self, word: str, start: int, end: int) -> Fault:
+        """A share that is not written as one: `95 percent`, or `95 %` without `at least`."""
+        before = self._words[self._next - 1][0]
+        remedy = _share_of_domain(before)
+        message = f"a share of the domain is not written so: '{before} {word}'"
+        return Fault(start, end, "S271", message, remedy)
 
     def end(self) -> None:
         """Nothing may follow.
@@ -223,7 +239,13 @@ class _Words:
                 "conditions stand behind a colon: "
                 "`one stable focus: {at: {x: 0}, within: 2 %, over: [gain], called: home}`"
             )
+            if word in _LINKS:
+                remedy = f"write two claims: one ends before '{word}', the other gets its own '-'"
             raise SentenceError(Fault(start, len(self._text.rstrip()), "S271", message, remedy))
+
+
+def _share_of_domain(percents: str) -> str:
+    return f"write `at least {percents} % of the domain goes to NAME`"
 
 
 def _unknown(

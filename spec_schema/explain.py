@@ -8,7 +8,7 @@ from pydantic_core import ErrorDetails
 
 from spec_schema.kinds import MODELS
 from spec_schema.mistake import TYPE, Mistake, carried
-from spec_schema.model_walk import choices_at, example_at, keys_at
+from spec_schema.model_walk import choices_at, example_at, keys_at, lengths_at
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, nearest
 from spec_schema.wording import as_yaml, described, number, quoted
@@ -30,6 +30,13 @@ _TRUTHS = {
     **dict.fromkeys(("no", "off", "n", "false"), "false"),
 }
 """What YAML 1.1 took for a truth value, and what it is called now."""
+_CALLED = {
+    "is": "kind of point",
+    "keep": "way to keep a field",
+    "fill": "way to fill",
+    "between": "interpolation",
+}
+"""What a word is that stands under a key which is no noun for it."""
 _BOUNDS = {
     "greater_than": ("gt", "more than"),
     "greater_than_equal": ("ge", "at least"),
@@ -104,7 +111,7 @@ def _missing(model: type[BaseModel], path: Path) -> Mistake:
 
 def _unknown_word(model: type[BaseModel], path: Path, got: Any) -> Mistake:
     known = tuple(MODELS) if path == ("kind",) else choices_at(model, path)
-    what = str(path[-1])
+    what = _CALLED.get(str(path[-1]), str(path[-1]))
     if not isinstance(got, str):
         return Mistake(
             "S103", f"expected one of {', '.join(known)}, got {described(got)}", "", path
@@ -128,11 +135,13 @@ def _wrong_type(model: type[BaseModel], kind: str, path: Path, got: Any) -> Mist
 def _wrong_length(model: type[BaseModel], path: Path, got: Any, context: dict[str, Any]) -> Mistake:
     what = "mapping" if isinstance(got, dict) else "list"
     if got:
+        least, most = lengths_at(model, path)
         limit, words = (
             (context["min_length"], "at least")
             if "min_length" in context
             else (context["max_length"], "at most")
         )
+        words = "exactly" if least == most == limit else words
         message = f"{quoted(str(path[-1]))} takes {words} {limit} (got {len(got)})"
         return Mistake("S262", message, _write(model, path), path)
     return Mistake("S110", f"{quoted(str(path[-1]))} is an empty {what}", _write(model, path), path)

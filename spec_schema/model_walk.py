@@ -30,6 +30,16 @@ def choices_at(model: type[BaseModel], path: Path) -> tuple[str, ...]:
     return get_args(field.annotation) if field else ()
 
 
+def lengths_at(model: type[BaseModel], path: Path) -> tuple[int | None, int | None]:
+    """The least and the largest length of the list or mapping at `path`, where there are limits."""
+    owner = _model_at(model, path[:-1])
+    field = _by_key(owner).get(str(path[-1])) if owner else None
+    limits: list[Any] = field.metadata if field else []
+    least = next((limit.min_length for limit in limits if hasattr(limit, "min_length")), None)
+    most = next((limit.max_length for limit in limits if hasattr(limit, "max_length")), None)
+    return least, most
+
+
 def _by_key(model: type[BaseModel]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in model.model_fields.items()}
 

@@ -100,12 +100,15 @@ def quantity_in(text: str, wanted: Unit) -> float:
     unit = quantity.unit
     if unit.dimension != wanted.dimension:
         message = f"{_short(text.strip())} can't be read in {wanted.text}"
-        advice = (
-            f"{unit.text} is {describe(unit.dimension)} in SI, "
-            f"{wanted.text} is {describe(wanted.dimension)}"
-        )
+        advice = "write a plain number" if wanted.text == "1" else f"write it in {wanted.text}"
+        told = [_in_si(one) for one in (unit, wanted) if one.text != describe(one.dimension)]
+        advice = "; ".join([advice, *([", ".join(told)] if told else [])])
         raise UnitFault(Fault(0, len(text), "S125", message, advice))
     return quantity.value
+
+
+def _in_si(unit: Unit) -> str:
+    return f"{unit.text} is {describe(unit.dimension)} in SI"
 
 
 def _short(text: str) -> str:

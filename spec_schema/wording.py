@@ -52,6 +52,15 @@ def counted(count: int, noun: str) -> str:
     return f"{count} axes" if noun == "axis" else f"{count} {noun}s"
 
 
+def with_article(noun: str) -> str:
+    """A thing that is named for the first time.
+
+    >>> with_article("saddle"), with_article("unstable focus")
+    ('a saddle', 'an unstable focus')
+    """
+    return f"an {noun}" if noun[:1] in "aeiou" else f"a {noun}"
+
+
 def number(value: float) -> str:
     """A number as the user would write it.
 

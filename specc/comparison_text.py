@@ -6,6 +6,7 @@ from typing import Final
 
 from compiler.quantities import rate_text
 from runtime.arrays import Array
+from spec_schema.wording import with_article
 from verifier.topology.comparing.comparison import Comparison, RateDifference
 from verifier.topology.comparing.matching import Fate, Feature
 from verifier.topology.features import AxisRange
@@ -111,7 +112,7 @@ def _feature(comparison: Comparison, feature: Feature) -> str:
             apart = f"moved by {gap}" if feature.fate is Fate.MOVED else f"off by {gap}"
             return f"{feature.fate}: {feature.found} at {at}, {apart}{period}"
         case Fate.CHANGED:
-            return f"changed: {feature.wanted} is a {feature.found} here, at {at}"
+            return f"changed: {feature.wanted} is {with_article(str(feature.found))} here, at {at}"
         case Fate.MISSING:
             return f"missing: {feature.wanted} at {at}"
         case Fate.EXTRA:

@@ -2,11 +2,18 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 from spec_schema.expressions.algebra import build
 from spec_schema.expressions.tree import Apply, Expr, Name, Number, Text, fold, same, walk
 from spec_schema.faults import Fault
 from spec_schema.suggest import did_you_mean
+
+TIMES: Final = frozenset({"t", "time"})
+NO_CLOCK: Final = (
+    "expressions can't read the time; give the behavior a clock of its own, such as a periodic "
+    "state `phase` with a constant rate, or a control that the log tells"
+)
 
 
 def names_in(expr: Expr) -> frozenset[str]:
@@ -18,7 +25,7 @@ def unknown_names(expr: Expr, known: Iterable[str]) -> list[Fault]:
     """A fault for each place where a name stands that is not `known`."""
     names = sorted(known)
     found = {
-        Fault(node.start, node.end, "S139", _unknown(node.name), did_you_mean(node.name, names))
+        Fault(node.start, node.end, "S139", _unknown(node.name), _meant(node.name, names))
         for node in walk(expr)
         if isinstance(node, Name) and node.name not in names
     }
@@ -27,6 +34,12 @@ def unknown_names(expr: Expr, known: Iterable[str]) -> list[Fault]:
 
 def _unknown(name: str) -> str:
     return f"nothing is named '{name if len(name) <= 40 else name[:37] + '...'}'"
+
+
+def _meant(name: str, known: Sequence[str]) -> str:
+    if name in TIMES and name not in known:
+        return NO_CLOCK
+    return did_you_mean(name, known)
 
 
 def substitute(expr: Expr, mapping: Mapping[str, Expr]) -> Expr:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
 
+from spec_schema.expressions.choices import choice_in
 from spec_schema.faults import Fault
 
 LONGEST = 10_000
@@ -114,6 +115,9 @@ def scan(text: str) -> Scan:
         return Scan(None, (_too_large(f"has {operators} operators (at most {MOST_OPERATORS})"),))
     if _depth(tokens) > DEEPEST_BRACKETS:
         return Scan(None, (_too_large(f"has over {DEEPEST_BRACKETS} brackets within brackets"),))
+    choice = choice_in(text, tokens)
+    if choice is not None:
+        return Scan(None, (choice,))
     strange = [_strange(t) for t in tokens if t.kind == "other"]
     structure = [] if strange else [*_brackets(tokens), *_order(tokens)]
     repairs = [

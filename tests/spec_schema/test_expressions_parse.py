@@ -313,3 +313,26 @@ def test_names_are_replaced_all_at_once() -> None:
 
 def test_pi_is_the_double_nearest_to_pi() -> None:
     assert parse("pi") == Number(math.pi)
+
+
+@pytest.mark.parametrize(
+    ("text", "underlined", "remedy"),
+    [
+        ("if x > 0 then k*x else 0", "if x > 0 then k*x else 0", "where(x > 0, k*x, 0)"),
+        ("1 + (if c then a else b)", "if c then a else b", "where(c, a, b)"),
+        ("max(if c then a else b, 3)", "if c then a else b", "where(c, a, b)"),
+        (
+            "if c then a else if d then e else f",
+            "if c then a else if d then e else f",
+            "where(c, a, where(d, e, f))",
+        ),
+        ("if(x > 0, 1, 2)", "if(x > 0, 1, 2)", "where(x > 0, 1, 2)"),
+        ("if c then a", "if c then a", "where(c, a, b)"),
+    ],
+)
+def test_a_choice_of_another_language_is_rewritten(text: str, underlined: str, remedy: str) -> None:
+    (found,) = told(text)
+
+    assert (found[0], found[2]) == (underlined, f"write {remedy}")
+    if not text.endswith("then a"):
+        parse(remedy)

@@ -12,6 +12,7 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array, frozen
+from spec_schema.wording import with_article
 from verifier.topology.branches.continuation import Change
 from verifier.topology.features import AxisRange, Cycle, FixedPoint, PointKind, Portrait, Stability
 from verifier.topology.words import described_cycle
@@ -163,7 +164,7 @@ def _of_cycles(below: Portrait, above: Portrait) -> Difference | None:
         if lone.stability is Stability.SEMI_STABLE:
             at = frozen(lone.points[0])
             return Difference(Change.CYCLES_MEET, at, f"a stable and an unstable cycle {verb}")
-        about = f"a {described_cycle(axes, lone)} {'begins' if more is new else 'ends'}"
+        about = f"{with_article(described_cycle(axes, lone))} {'begins' if more is new else 'ends'}"
         if _is_doubled(lone, kept, fewer):
             about = f"{about}, of twice the period of one beside it"
             return Difference(Change.PERIOD_DOUBLING, frozen(lone.points[0]), about)
