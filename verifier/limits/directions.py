@@ -16,6 +16,7 @@ from runtime.arrays import Array
 from runtime.program import Program
 from verifier.diagnosis.parameters import Parameter
 from verifier.diagnosis.sensitivities import Sensitivities
+from verifier.fidelity.stretches.needs import names_read
 from verifier.limits.telling import where_it_shows
 from verifier.report.diagnosis import ParameterKind
 from verifier.report.limits import NotTold
@@ -51,7 +52,9 @@ def untold_of_numbers(
 
     known: variables of which that is said already.
     """
-    own = [i for i, each in enumerate(found.parameters) if each.kind in OWN]
+    read = names_read(program)
+    # What only guards read moves no window: the changes of mode tell it.
+    own = [i for i, p in enumerate(found.parameters) if p.kind in OWN and p.name in read]
     groups = [own, *_pairs(found.parameters, known)]
     return [
         _said(program, [found.parameters[i] for i in flat.members], flat.weights)

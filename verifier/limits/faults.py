@@ -66,16 +66,25 @@ def _of_rate(program: Program, fidelity: Fidelity, study: Study, j: int) -> list
     horizon, tolerance = fidelity.horizon, _allowed(fidelity, study, j)
     speed = _speed(study, j)
     gain = tolerance / (horizon * speed) if speed > 0.0 else LARGEST_GAIN
-    every = program.field.every
-    clock = every if every > 0.0 else 1.0
-    unit = Unit(f"{state.unit.text}/{'step' if every > 0.0 else 's'}", state.unit.scale)
-    if state.unit.text in {"", "1"}:
-        unit = Unit("per step" if every > 0.0 else "1/s", state.unit.scale)
+    clock = program.field.every if program.field.is_map else 1.0
+    unit = _per_time(state.unit, is_map=program.field.is_map)
     most = (state.high - state.low) / horizon * clock
     return [
         _planned(Fault.GAIN, state, PER_CENT, j, gain, LARGEST_GAIN),
         _planned(Fault.OFFSET, state, unit, j, tolerance / horizon * clock, most),
     ]
+
+
+def _per_time(unit: Unit, *, is_map: bool) -> Unit:
+    """The unit of a rate; of a step map, of a step.
+
+    >>> [_per_time(Unit(text, 1.0), is_map=False).text for text in ("m", "m/s", "1")]
+    ['m/s', 'm/s^2', '1/s']
+    """
+    text = unit.text or "1"
+    if is_map:
+        return Unit(f"{text}/step", unit.scale)
+    return Unit(f"{text}^2" if text.endswith("/s") else f"{text}/s", unit.scale)
 
 
 def _of_sensor(program: Program, fidelity: Fidelity, state: State, j: int) -> Planned:

@@ -13,7 +13,7 @@ All faults and sizes are integrated at once, as lanes: L lanes, K knots, n state
 """
 
 from dataclasses import dataclass, replace
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from verifier.limits.knots import Knots, knots_of
 from verifier.limits.lanes import Lane, integrated
 from verifier.report.limits import Fault
 from verifier.traces.trace import Series, Trace
+
+FINE: Final = 0.1
+"""A quantum is no larger than this share of a series' range: a series of two values has none."""
 
 
 @final
@@ -80,7 +83,7 @@ def _moved(series: Series, deviation: Array, rng: np.random.Generator) -> Series
     Rounding up or down by chance, so that a deviation below one step is not lost.
     """
     quantum = quantum_of(series.values)
-    if quantum > 0.0:
+    if 0.0 < quantum <= FINE * float(np.ptp(series.values)):
         deviation = quantum * np.floor(deviation / quantum + rng.random(len(deviation)))
     return replace(series, values=series.values + deviation)
 

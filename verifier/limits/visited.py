@@ -23,7 +23,9 @@ NOISES: Final = 6.0
 PARTS: Final = 20
 """Parts of an axis that are told apart as visited or not."""
 UNSEEN: Final = 0.2
-"""A larger share of an axis that was not visited is worth a sentence."""
+"""A larger share of the declared region that was not visited is worth a sentence."""
+UNSEEN_DOMAIN: Final = 0.5
+"""Where no region is declared: of the domain, where a robot need not go everywhere."""
 NEAR: Final = 0.05
 """A feature was visited where the robot came nearer than this share of the domain, per state."""
 
@@ -144,7 +146,7 @@ def _unvisited(fidelity: Fidelity, part: State | Control, values: Array) -> list
         # Commands jump: what lies between two of them is not unseen.
         empty &= (edges[:-1] > np.max(values)) | (edges[1:] < np.min(values))
     share = float(np.mean(empty))
-    if share <= UNSEEN:
+    if share <= (UNSEEN if part.name in fidelity.region else UNSEEN_DOMAIN):
         return []
     flags = np.concatenate([[0], empty.astype(np.int64), [0]])
     runs = np.flatnonzero(np.diff(flags)).reshape(-1, 2)

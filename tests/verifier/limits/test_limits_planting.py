@@ -1,12 +1,15 @@
 """What is planted, against closed forms and against robots that have the fault themselves."""
 
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
 import pytest
 
-from runtime.program import Kind, Program, Role
+from runtime.code import Code
+from runtime.program import Guard, Kind, Program, Role
 from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.stretches.spans import contains
 from verifier.fidelity.verify import judged
 from verifier.limits.faults import Planned, faults_of
 from verifier.limits.lanes import Lane
@@ -177,8 +180,8 @@ def test_a_step_map_takes_the_faulty_steps(scenes: ModuleType) -> None:
         {"x": "0.9 x mul 0.1 add"},
         scenes.fidelity({"x": 0.05}, 1.0),
     )
-    field = scenes.replace(program.field, every=0.1, form="step")
-    program = scenes.replace(program, field=field)
+    field = replace(program.field, every=0.1, form="step")
+    program = replace(program, field=field)
     times = np.arange(0.0, 20.0, 0.1)
     trace = scenes.trace(scenes.series("x", times, 1.0 + 2.0 * 0.9 ** np.arange(200)))
 
@@ -186,3 +189,38 @@ def test_a_step_map_takes_the_faulty_steps(scenes: ModuleType) -> None:
 
     expected = 0.2 * (1.0 - 0.9 ** np.arange(200))
     assert moved(trace, copy, "x") == pytest.approx(expected, abs=1e-9)
+
+
+def test_what_a_guard_resets_has_no_deviation_afterwards(scenes: ModuleType) -> None:
+    """Back and forth at 0.5, 6 s each way; a window of 5 s goes through the turns."""
+    values = ("forward", "back")
+    mode = scenes.state("going", 0.0, 1.0, kind=Kind.DISCRETE, values=values)
+    plain = scenes.program(
+        (scenes.state("x", -4.0, 4.0), scenes.state("v", -2.0, 2.0), mode),
+        (),
+        {"x": "v", "v": "going 0 mul"},
+        scenes.fidelity({"x": 0.2, "v": 0.2}, 5.0),
+    )
+    guards = (
+        Guard(0, 1, Code("x 1.5 sub"), (("v", Code("0.5 neg")),), "spec.yaml:1:1"),
+        Guard(1, 0, Code("0 x sub 1.5 sub"), (("v", Code("0.5")),), "spec.yaml:2:1"),
+    )
+    program = replace(plain, field=replace(plain.field, mode="going", guards=guards))
+    times = np.arange(0.0, 40.0, 0.05)
+    phase = (times + 0.025) % 12.0
+    forward = phase < 6.0
+    x = np.where(forward, phase - 3.0, 9.0 - phase) / 2.0
+    trace = scenes.trace(
+        scenes.series("x", times, x),
+        scenes.series("v", times, np.where(forward, 0.5, -0.5)),
+        scenes.series("going", times, np.where(forward, 0.0, 1.0)),
+    )
+
+    copy, study = planted(program, trace, Fault.OFFSET, "v", 0.01)
+
+    inside = contains(study.segments.spans, times)
+    since = np.where(forward, phase, phase - 6.0)
+    settled = inside & (since > 0.1) & (times > 6.0)
+    assert np.sum(settled) > 200
+    assert moved(trace, copy, "v")[settled] == pytest.approx(0.01 * since[settled], abs=1e-3)
+    assert np.max(moved(trace, copy, "x")[settled]) > 0.3
