@@ -109,10 +109,9 @@ def verify(
             is_interrupted = True
     if len(traces) == 1 and outcomes and isinstance(outcomes[0], Unusable):
         raise outcomes[0].error
-    if is_interrupted and not outcomes:
-        raise KeyboardInterrupt
-    _print(outcomes, form, is_one=len(traces) == 1)
-    _write(outcomes, output, is_one=len(traces) == 1)
+    if outcomes:
+        _print(outcomes, form, is_one=len(traces) == 1)
+        _write(outcomes, output, is_one=len(traces) == 1)
     if is_interrupted:
         say(f"interrupted: {len(outcomes)} of {len(traces)} recordings were judged", "bold red")
         return Status.INTERRUPTED

@@ -28,11 +28,12 @@ def as_annotations(findings: Iterable[Finding], source: str = "") -> str:
 def annotation(command: str, origin: str, title: str, message: str) -> str:
     """One annotation, with whatever would end it early escaped."""
     place = place_of(origin)
-    properties = {"title": title}
+    properties: dict[str, str] = {}
     if place is not None:
-        properties = {"file": place.file} | properties
+        properties["file"] = place.file
         if place.line:
             properties |= {"line": str(place.line), "col": str(place.column)}
+    properties["title"] = title
     listed = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
     return f"::{command} {listed}::{_data(message)}"
 

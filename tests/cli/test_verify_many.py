@@ -1,0 +1,180 @@
+"""`specc verify` of many recordings: a table, one report, one exit status."""
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import specc.runs
+from specc.cli import entry, main
+from specc.verifying import verify_by
+
+SPECS = Path(__file__).parents[2] / "specs"
+VDP = str(SPECS / "van_der_pol.yaml")
+
+
+@pytest.fixture(autouse=True)
+def recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three robots made by scipy: one faithful, one far off, and one that is seen too briefly."""
+    monkeypatch.chdir(tmp_path)
+    _record("good.csv", mu=1.0, seconds=60.0)
+    _record("bad.csv", mu=2.0, seconds=60.0)
+    _record("short.csv", mu=1.0, seconds=1.0)
+    Path("torn.csv").write_text("")
+
+
+def _record(name: str, mu: float, seconds: float) -> None:
+    times = np.arange(0.0, seconds, 0.05)
+    found = solve_ivp(
+        lambda _, s: [s[1], mu * (1.0 - s[0] ** 2) * s[1] - s[0]],
+        (0.0, times[-1]),
+        [1.0, 0.0],
+        t_eval=times,
+        rtol=1e-9,
+        atol=1e-9,
+    )
+    noise = 0.01 * np.random.default_rng(1).standard_normal(found.y.shape)
+    rows = np.column_stack([times, (found.y + noise).T, np.ones(len(times))])
+    Path(name).write_text("t,x,v,mu\n" + "\n".join(",".join(map(str, row)) for row in rows))
+
+
+def verify(*arguments: str) -> int:
+    return main(["verify", "--spec", VDP, "--quick", *arguments])
+
+
+@pytest.mark.parametrize(
+    ("traces", "status"),
+    [
+        (("good.csv", "good.csv"), 0),
+        (("good.csv", "short.csv"), 4),
+        (("short.csv", "good.csv", "bad.csv"), 1),
+        (("bad.csv", "torn.csv", "good.csv"), 2),
+        (("nowhere.mcap", "good.csv"), 2),
+    ],
+)
+def test_the_exit_status_is_that_of_the_worst(traces: tuple[str, ...], status: int) -> None:
+    assert verify(*traces) == status
+
+
+def test_the_table_has_a_row_for_each_and_says_why_one_did_not_pass(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    verify("good.csv", "bad.csv", "torn.csv")
+
+    lines = capsys.readouterr().out.splitlines()
+    rows = {line.split()[0]: line for line in lines[:4]}
+    assert "PASS" in rows["good.csv"]
+    assert "FAIL" in rows["bad.csv"]
+    assert "exceeded" in rows["bad.csv"]
+    assert "can't be used" in rows["torn.csv"]
+    assert any(line.strip().startswith("bad.csv: ") for line in lines[5:])
+    assert any(line.strip().startswith("torn.csv: ") for line in lines[5:])
+    assert lines[-1] == "FAIL  3 recordings: 1 fail, 1 pass, 1 can't be used"
+
+
+def test_one_report_holds_all_recordings(capsys: pytest.CaptureFixture[str]) -> None:
+    wanted = ["r.html", "r.json", "r.txt", "r.junit.xml", "r.sarif"]
+    outputs = [part for name in wanted for part in ("-o", name)]
+
+    assert verify("good.csv", "bad.csv", "torn.csv", *outputs) == 2
+
+    record = json.loads(Path("r.json").read_text())
+    assert record["verdict"] == "fail"
+    assert record["counts"] == {"fail": 1, "inconclusive": 0, "pass": 1, "unusable": 1}
+    assert [run["trace"]["source"] for run in record["runs"]] == ["good.csv", "bad.csv", "torn.csv"]
+    assert record["runs"][2]["diagnostics"][0]["code"].startswith("V3")
+    suites = ET.fromstring(Path("r.junit.xml").read_text())  # noqa: S314  our own
+    assert [suite.attrib["name"] for suite in suites] == ["good.csv", "bad.csv", "torn.csv"]
+    sarif = json.loads(Path("r.sarif").read_text())
+    traces = {result["properties"]["trace"] for result in sarif["runs"][0]["results"]}
+    assert traces == {"bad.csv", "torn.csv"}
+    page = Path("r.html").read_text()
+    assert page.count("<article") == 2
+    assert 'href="#run-1"' in page
+    assert 'id="run-1"' in page
+    assert Path("r.txt").read_text().count("sha256") == 2
+    capsys.readouterr()
+
+
+def test_annotations_come_at_the_lines_of_the_spec(capsys: pytest.CaptureFixture[str]) -> None:
+    assert verify("good.csv", "bad.csv", "--format", "github") == 1
+
+    lines = capsys.readouterr().out.splitlines()
+    assert lines
+    assert all(line.startswith(("::error ", "::warning ", "::notice ")) for line in lines)
+    assert any(f"file={VDP},line=" in line and "bad.csv: x departs" in line for line in lines)
+    assert not any("good.csv" in line for line in lines if line.startswith("::error"))
+
+
+def test_a_spec_that_cannot_be_used_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("wrong.yaml").write_text(
+        Path(VDP).read_text().replace("kind: behavior", "kind: behaviour")
+    )
+
+    assert main(["verify", "good.csv", "bad.csv", "--spec", "wrong.yaml"]) == 2
+    told = capsys.readouterr().err
+    assert told.count("wrong.yaml:") >= 1
+    assert told.count("error[") == 1
+
+
+def test_a_mistake_is_an_annotation_where_annotations_are_asked_for(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert verify("torn.csv", "--format", "github") == 2
+    assert capsys.readouterr().out.startswith("::error file=torn.csv,title=V3")
+
+
+def test_an_interrupted_call_tells_what_was_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(specc.runs, "verify_by", _interrupted_at("bad.csv"))
+
+    assert verify("good.csv", "bad.csv", "short.csv", "-o", "r.json") == 130
+
+    told = capsys.readouterr()
+    assert "interrupted: 1 of 3 recordings were judged" in told.err
+    assert "PASS" in told.out
+    assert len(json.loads(Path("r.json").read_text())["runs"]) == 1
+
+
+def test_a_call_that_is_interrupted_at_once_ends_like_any_other(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(specc.runs, "verify_by", _interrupted_at("good.csv"))
+    monkeypatch.setattr("sys.argv", ["specc", "verify", "good.csv", "bad.csv", "--spec", VDP])
+
+    with pytest.raises(SystemExit) as ended:
+        entry()
+
+    assert ended.value.code == 130
+    assert "interrupted" in capsys.readouterr().err
+
+
+def _interrupted_at(name: str) -> Callable[..., object]:
+    def judge(trace: Path, *arguments: object, **named: object) -> object:
+        if trace.name == name:
+            raise KeyboardInterrupt
+        return verify_by(trace, *arguments, **named)  # type: ignore[arg-type]  # passed on
+
+    return judge
+
+
+def test_the_spec_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+    real = specc.runs.program_for_verify
+
+    def counted(path: Path) -> object:
+        calls.append(path)
+        return real(path)
+
+    monkeypatch.setattr(specc.runs, "program_for_verify", counted)
+    outcomes: Iterator[object] = specc.runs.verify_each(
+        ["good.csv", "bad.csv"], VDP, only_verdict=True
+    )
+
+    assert len(list(outcomes)) == 2
+    assert calls == [Path(VDP)]
