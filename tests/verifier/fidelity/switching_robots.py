@@ -23,11 +23,15 @@ class Leave:
 
 @dataclass(frozen=True)
 class Robot:
-    """A field and ways out for each mode; `logged` is what a mode calls itself in the log."""
+    """A field and ways out for each mode; `logged` is what a mode calls itself in the log.
+
+    step: longer ones might pass over a way out that is open for a short while.
+    """
 
     rates: dict[str, Rate]
     leave: dict[str, list[Leave]]
     logged: dict[str, str] = field(default_factory=dict)
+    step: float = np.inf
 
 
 def run(robot: Robot, mode: str, start: list[float], times: Array) -> tuple[Array, list[str]]:
@@ -42,6 +46,7 @@ def run(robot: Robot, mode: str, start: list[float], times: Array) -> tuple[Arra
             method="DOP853",
             rtol=1e-9,
             atol=1e-10,
+            max_step=robot.step,
             events=events,
             dense_output=True,
         )
