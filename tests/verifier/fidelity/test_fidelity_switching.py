@@ -9,6 +9,7 @@ import pytest
 from runtime.program import Fidelity, Program
 from specc.loading import load_program
 from tests.runtime import hybrids
+from tests.runtime.behaviors import formula_program, state
 from tests.verifier.fidelity.switching_robots import (
     Leave,
     Patrol,
@@ -374,3 +375,51 @@ def test_a_patrol_that_takes_time_to_turn_is_judged_in_all_its_modes(
     timing = way(found, "forward").timing
     assert timing is not None
     assert timing.late == pytest.approx(beyond / 0.5, abs=0.02)
+
+
+def test_a_robot_that_goes_elsewhere_than_it_should_is_told_where_to() -> None:
+    spec = hybrids.with_modes(
+        formula_program(
+            (state("x", -1.0, 3.0), state("y", -1.0, 3.0)),
+            {"x": "mode 0 eq 1 mode 1 eq -1 0 where where", "y": "mode 2 eq -1 0 where"},
+        ),
+        ("out", "home", "dock"),
+        hybrids.guard(0, 1, "x 1 sub"),
+        hybrids.guard(0, 2, "y 2 sub"),
+        hybrids.guard(1, 0, "x neg"),
+        hybrids.guard(2, 0, "y neg", x="0"),
+    )
+    # At x = 1 it goes to its dock; y is 1 all the time, and no reason to.
+    robot = Robot(
+        {"out": lambda *_: [1.0, 0.0], "dock": lambda *_: [0.0, -1.0]},
+        {
+            "out": [Leave(lambda s: s[0] - 1.0, "dock")],
+            "dock": [Leave(lambda s: -s[1], "out", lambda _: [0.0, 1.0])],
+        },
+        step=0.1,
+    )
+    times = np.arange(0.0, 30.0, 0.05)
+    ran = run(robot, "out", [0.0, 1.0], times)
+    names = ("mode", ("out", "home", "dock"))
+    drive = log(("x", "y"), ran, times, {"x": 0.01, "y": 0.01}, 5, names)
+
+    found = switching(judged_by(spec, {"x": 0.05, "y": 0.05}, 0.5), drive)
+
+    wrong = [each for each in found.switches if each.sort is SwitchSort.WRONG_TARGET]
+    assert len(wrong) > 10
+    assert {(each.target, each.wanted) for each in wrong} == {("dock", "home")}
+    assert (
+        "where by the spec it had to go from out to home, the robot went elsewhere"
+        in (found.reasons[0])
+    )
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3, 20, 61, 62, 63])
+def test_a_log_that_is_cut_short_is_no_mishap(patrol: Program, samples: int) -> None:
+    whole = patrol_log(Patrol().robot(), 10.0, 18)
+    cut = {
+        name: replace(each, times=each.times[:samples], values=each.values[:samples])
+        for name, each in whole.series.items()
+    }
+
+    assert verify(patrol, replace(whole, series=cut)).verdict is Verdict.INCONCLUSIVE

@@ -17,6 +17,8 @@ from verifier.report.report import Standing
 from verifier.report.switching import Jump, Switch, Switching, SwitchSort, Timing, Way
 from verifier.traces.trace import Trace
 
+FEWEST = 3
+"""With fewer samples there is nothing to fit."""
 AGAINST = {SwitchSort.UNEXPECTED, SwitchSort.MISSED, SwitchSort.WRONG_TARGET}
 
 
@@ -36,12 +38,12 @@ def switching_in(program: Program, trace: Trace) -> Switching | None:
 def switching_of(
     program: Program, needs: Needs, fidelity: Fidelity
 ) -> tuple[Switching, Needs] | None:
-    """The judgement of all changes of mode; None for a program without ways out of modes.
+    """The judgement of all changes of mode; None without ways out of modes, or without samples.
 
     Also the needs, with the changes at the times that the states tell. `needs` holds every
     predicted state, perhaps without the mode: then the sentences say that nothing can be said.
     """
-    if not program.field.guards:
+    if not program.field.guards or len(needs.series[needs.base].times) < FEWEST:
         return None
     mode = mode_of(program, needs)
     if mode is not None and not mode.is_known:
