@@ -7,6 +7,7 @@ from mcap.records import Channel, Schema
 
 from verifier.traces.files.mcap_reading import Reading
 from verifier.traces.files.mcap_records import HEAD, MESSAGE, Bytes, ChunkHead, parse
+from verifier.traces.files.streams import Run
 from verifier.traces.files.unpacking import UnpackError, unpack, unpack_torn
 
 
@@ -49,7 +50,8 @@ def _walk(inside: bytes, place: int, reading: Reading, *, sure: bool) -> int:
     """Reads the records; returns where the last whole one ends."""
     position, size = 0, len(inside)
     head, message = HEAD.unpack_from, MESSAGE.unpack_from
-    add = reading.gathering.add
+    gathering = reading.gathering
+    runs: dict[int, Run] = {}
     while position + 9 <= size:
         opcode, length = head(inside, position)
         begin = position + 9
@@ -58,10 +60,21 @@ def _walk(inside: bytes, place: int, reading: Reading, *, sure: bool) -> int:
             break
         if opcode == 5 and length >= 22:
             channel, _, log_time, _ = message(inside, begin)
-            add(channel, log_time, inside, begin + 22, end)
+            run = runs.get(channel)
+            if run is None:
+                run = runs[channel] = gathering.run(channel)
+            gathering.count += 1
+            run.times.append(log_time)
+            if run.wanted:
+                run.places.append(gathering.count)
+                run.payloads.append(inside[begin + 22 : end])
         else:
+            # What is declared from here on holds for what follows only.
+            gathering.take(runs)
+            runs = {}
             _other(opcode, inside[begin:end], place, reading, sure=sure)
         position = end
+    gathering.take(runs)
     return position
 
 

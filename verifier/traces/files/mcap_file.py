@@ -79,7 +79,8 @@ class _Walk:
         self.reading = reading
         self.tell = tell
         self.position = len(MAGIC)
-        self.loose = False
+        self.loose = 0
+        self.damaged = False
         self.ended = False
 
     def run(self) -> None:
@@ -96,6 +97,10 @@ class _Walk:
             self.tell(min(self.position, size), size)
         if not self.ended:
             gathering.lose("file cut", f"it ends at byte {size} without a footer")
+            self.damaged = True
+        if self.damaged and self.loose:
+            detail = "read outside chunks of a damaged file"
+            gathering.lose("unverified messages", detail, self.loose)
 
     def _step(self) -> bool:
         """Reads the record here and moves behind it; False where there is none."""
@@ -110,7 +115,7 @@ class _Walk:
             return self._disguised(begin, end)
         self.position = end
         if opcode == Opcode.MESSAGE:
-            self.loose = True
+            self.loose += 1
             channel, _, log_time, _ = MESSAGE.unpack_from(self.data, begin)
             self.reading.gathering.add(channel, log_time, self.data, begin + MESSAGE.size, end)
         elif opcode == Opcode.FOOTER:
@@ -205,8 +210,9 @@ class _Walk:
 
     def _resync(self) -> None:
         """Moves to the next believable record, and counts the bytes between."""
+        self.damaged = True
         start, size = self.position, len(self.data)
-        found = next_record(self.data, start, loose=self.loose or not self.reading.chunked)
+        found = next_record(self.data, start, loose=self.loose > 0 or not self.reading.chunked)
         gathering = self.reading.gathering
         if found < 0:
             gathering.lose("file cut or overwritten", f"nothing readable from byte {start} on")

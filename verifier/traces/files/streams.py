@@ -2,7 +2,8 @@
 
 import mmap
 from array import array
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
 from typing import Generic, TypeVar, final
 
 import numpy as np
@@ -19,9 +20,19 @@ MOST_WAITING = 1 << 26
 """Bytes of messages that are held for a channel whose description has not been seen yet."""
 
 UNBOUNDED = 1 << 62
-_MOST_PLACES = (1 << 32) - 1
 
 Key = TypeVar("Key", bound=Hashable)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Run:
+    """Some messages of one channel: times, places and payloads, the latter two where wanted."""
+
+    times: list[int]
+    places: list[int]
+    payloads: list[bytes]
+    wanted: bool
 
 
 @final
@@ -39,6 +50,22 @@ class _Stream:
         self.payloads: list[bytes] = []
         self.held = 0
         self.room = MOST_WAITING
+
+    def take(self, run: Run) -> None:
+        """The next messages; where enough are held, all of them are decoded."""
+        self.count += len(run.times)
+        if not run.wanted:
+            return
+        self.times.extend(run.times)
+        self.places.extend(run.places)
+        if self.room <= 0:
+            return
+        size = sum(map(len, run.payloads))
+        self.payloads += run.payloads
+        self.held += size
+        self.room -= size
+        if self.held >= BATCH_BYTES and self.reader:
+            self.digest()
 
     def digest(self) -> None:
         """Decodes what is held."""
@@ -83,33 +110,38 @@ class Gathering(Generic[Key]):
 
     def add(self, key: Key, log_time: int, data: bytes | mmap.mmap, begin: int, end: int) -> None:
         """A message at `log_time` >= 0 nanoseconds, whose payload is `data[begin:end]`."""
-        if log_time > LATEST:
-            self.lose("impossible log time", "after the year 2096")
-            return
+        self.count += 1
+        run = self.run(key)
+        run.times.append(log_time)
+        if run.wanted:
+            run.places.append(self.count)
+            run.payloads.append(data[begin:end])
+        self.take({key: run})
+
+    def run(self, key: Key) -> Run:
+        """An empty run of messages of a channel, to be filled and then taken."""
         stream = self._streams.get(key)
         if stream is None:
             stream = self._streams[key] = _Stream()
-        self.count += 1
-        stream.count += 1
-        if stream.channel is not None and stream.reader is None:
-            return
-        stream.times.append(log_time)
-        stream.places.append(min(self.count, _MOST_PLACES))
-        if stream.room > 0:
-            size = end - begin
-            stream.payloads.append(data[begin:end])
-            stream.held += size
-            stream.room -= size
-            if stream.held >= BATCH_BYTES and stream.reader:
-                stream.digest()
+        return Run([], [], [], wanted=stream.channel is None or stream.reader is not None)
 
-    def _all(self) -> list[_Stream]:
-        """The open channels' messages; those of no channel are lost."""
-        for key, stream in self._streams.items():
-            if stream.channel is None:
-                detail = f"channel {key} is not declared"
-                self.lose("messages without a channel", detail, stream.count)
-        return [stream for stream in self._streams.values() if stream.channel is not None]
+    def take(self, runs: Mapping[Key, Run]) -> None:
+        """The runs' messages; the caller has counted them."""
+        for key, run in runs.items():
+            possible = not run.times or max(run.times) <= LATEST
+            self._streams[key].take(run if possible else self._possible(run))
+
+    def _possible(self, run: Run) -> Run:
+        """The run without messages of impossible times, which are lost."""
+        rows = [row for row, log_time in enumerate(run.times) if log_time <= LATEST]
+        lost = len(run.times) - len(rows)
+        self.count -= lost
+        self.lose("impossible log time", "after the year 2096", lost)
+        times = [run.times[row] for row in rows]
+        if not run.wanted:
+            return Run(times, [], [], wanted=False)
+        places = [run.places[row] for row in rows]
+        return Run(times, places, [run.payloads[row] for row in rows], wanted=True)
 
     def lose(self, cause: str, detail: str, count: int = 1) -> None:
         """Something that could not be read."""
@@ -138,3 +170,11 @@ class Gathering(Generic[Key]):
         losses = tuple(Loss(cause, n, detail) for (cause, detail), n in self._losses.items())
         notes = tuple(dict.fromkeys(self.notes))
         return MessageLog(source, kind, tuple(described), losses, notes)
+
+    def _all(self) -> list[_Stream]:
+        """The open channels' messages; those of no channel are lost."""
+        for key, stream in self._streams.items():
+            if stream.channel is None:
+                detail = f"channel {key} is not declared"
+                self.lose("messages without a channel", detail, stream.count)
+        return [stream for stream in self._streams.values() if stream.channel is not None]

@@ -6,6 +6,7 @@ The texts come out of the log, from strangers: they are parsed, never executed.
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeAlias, final
 
 from rosbags.interfaces import Nodetype
@@ -101,6 +102,7 @@ class Struct:
 Node: TypeAlias = Number | Text | Many | Struct
 
 
+@lru_cache(maxsize=256)
 def definition(message_type: str, schema_encoding: str, text: str) -> Struct:
     """The tree of a message type; raises DefinitionError.
 

@@ -32,7 +32,7 @@ def decode(payloads: Sequence[bytes], asked: Sequence[Steps]) -> Decoded:
 def parse(payload: bytes) -> Json:
     """The message; raises ValueError with a sentence."""
     try:
-        message: Json = json.loads(payload)
+        message: Json = json.loads(payload.decode().removeprefix("\ufeff"))
     except UnicodeDecodeError as error:
         raise ValueError("it is not UTF-8 text") from error
     except (ValueError, RecursionError) as error:
