@@ -29,8 +29,8 @@ def excerpt_of(trace: Trace, fidelity: Fidelity, study: Study) -> tuple[Trace, s
     series = {name: _part(each, start, start + kept) for name, each in trace.series.items()}
     told = (
         f"faults were planted into {seconds(kept)} of the {seconds(last - first)} only"
-        f" (from {seconds(start - first)} on, where most moves); the whole trace would show"
-        " somewhat smaller ones"
+        f" (from {seconds(start - first)} on, where most moves); the whole trace may show"
+        " smaller ones"
     )
     return replace(trace, series=series), told
 
