@@ -14,7 +14,7 @@ from verifier.diagnosis.altered import Effect
 from verifier.diagnosis.candidates.clocks import effects_on_clocks
 from verifier.diagnosis.candidates.inputs import effects_on_inputs
 from verifier.diagnosis.candidates.rates import effects_on_rates
-from verifier.diagnosis.conclusion import concluded, nothing_to_tell
+from verifier.diagnosis.conclusion import PARTLY, concluded, nothing_to_tell
 from verifier.diagnosis.parameters import effect_of, parameters_of
 from verifier.diagnosis.profiled import setting_of
 from verifier.diagnosis.refitting import refitted
@@ -46,6 +46,8 @@ def diagnose(program: Program, trace: Trace, study: Study | None, report: Report
     if scene.windows < FEWEST:
         return nothing_to_tell(scene.windows)
     selection = select(scene, effects_of(scene), fidelity.tolerance)
+    if report.verdict is Verdict.PASS and selection.share(scene) < PARTLY:
+        selection = selection.without()
     best = _better_reading(program, fidelity, trace, scene, selection, report)
     if best is None:
         return _told(program, fidelity, scene, study, selection, report, None)

@@ -10,7 +10,7 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array
-from verifier.diagnosis.altered import Effect, Number
+from verifier.diagnosis.altered import Effect, Number, Values
 from verifier.diagnosis.fitting import (
     ENOUGH,
     Fit,
@@ -24,10 +24,12 @@ from verifier.diagnosis.fitting import (
     white_slopes,
 )
 from verifier.diagnosis.heldout import Scored, scored
+from verifier.diagnosis.naming import kind_of
 from verifier.diagnosis.profiled import profiled
 from verifier.diagnosis.residuals import owners
 from verifier.diagnosis.scene import Scene
 from verifier.fidelity.judging.departure import CONFIDENCE
+from verifier.report.diagnosis import CandidateKind
 
 MOST: Final = 5
 """So many are taken, at most."""
@@ -41,6 +43,9 @@ MATTERS: Final = 0.1
 """What is explained of a variable, root mean square, is at least this share of its tolerance."""
 SAME: Final = 0.02
 """Fits whose residuals differ by less than this share of what they explain are one and the same."""
+
+SLIPS: Final = (CandidateKind.SIGN, CandidateKind.UNIT_SLIP)
+"""Among words for the same, these say most."""
 
 
 @final
@@ -87,6 +92,11 @@ class Selection:
         """The rounds whose best was taken in and not dropped again."""
         kept = {effect.label for effect in self.final.effects}
         return tuple(s for s in self.steps if s.is_taken and s.tried[0].effect.label in kept)
+
+    def without(self) -> "Selection":
+        """With nothing taken in."""
+        steps = tuple(replace(step, is_taken=False) for step in self.steps)
+        return Selection(self.plain, self.plain, steps)
 
     def share(self, scene: Scene) -> float:
         """The share of the squared error beyond noise that all that was taken explains."""
@@ -174,19 +184,28 @@ def _better(one: Scored, other: Scored) -> Scored:
 def _promising(scene: Scene, base: Fit, effects: tuple[Effect, ...]) -> list[Effect]:
     """Without those of which a linear forecast promises nothing; curved ones stay."""
     single = tuple(each for each in effects if len(each.numbers) == 1)
-    values = (*base.values, *(value for each in single for value in each.neutral))
-    left = profiled(scene, (*base.effects, *single), values, base.starts, base.sigma)
+    together = tuple(each for each in single if not each.stands_in)
+    forecast = _forecasts(scene, base, together)
+    for each in single:
+        if each.stands_in:  # it changes the prediction even where its number is neutral
+            forecast |= _forecasts(scene, base, (each,))
+    bent = [each for each in single if np.isinf(forecast[each.label])]
+    forecast |= {each.label: _best_start(scene, base, each) for each in bent}
+    return [each for each in effects if forecast.get(each.label, np.inf) >= HINT]
+
+
+def _forecasts(scene: Scene, base: Fit, effects: tuple[Effect, ...]) -> dict[str, float]:
+    """By label, the log-likelihood that each promises, from the slopes at neutral values."""
+    values = (*base.values, *(value for each in effects for value in each.neutral))
+    left = profiled(scene, (*base.effects, *effects), values, base.starts, base.sigma)
     white = left.residual / base.sigma[owners(scene)]
     slopes = _freed(left.slopes / base.sigma[owners(scene)][:, None], len(base.values))
     along = np.einsum("wri,wr->i", slopes, white)
     size = np.einsum("wri,wri->i", slopes, slopes)
-    forecast = {
+    return {
         each.label: _forecast(each.numbers[0], float(a), float(b))
-        for each, a, b in zip(single, along, size, strict=True)
+        for each, a, b in zip(effects, along, size, strict=True)
     }
-    bent = [each for each in single if np.isinf(forecast[each.label])]
-    forecast |= {each.label: _best_start(scene, base, each) for each in bent}
-    return [each for each in effects if forecast.get(each.label, np.inf) >= HINT]
 
 
 def _best_start(scene: Scene, base: Fit, effect: Effect) -> float:
@@ -255,11 +274,19 @@ def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:
     order = sorted(tried, key=lambda t: -t.gain)
     top = order[0]
     same = [t for t in tried if t is top or _are_same(scene, t, top, base)]
-    head = same[0]
+    slips = [t for t in same if kind_of(t.effect, _own_values(t)) in SLIPS]
+    head = (slips or same)[0]
     alike = [t for t in order if t not in same and top.gain - t.gain < CLOSE]
     rest = [t for t in order if t is not head]
     is_taken = head.gain >= CLEAR and head.matters and _is_sure(scene, head)
-    return Step((head, *rest), tuple(same[1:]), tuple(alike), is_taken=is_taken)
+    others = tuple(t for t in same if t is not head)
+    return Step((head, *rest), others, tuple(alike), is_taken=is_taken)
+
+
+def _own_values(tried: Tried) -> Values:
+    """The values of the numbers that it brought in, which stand last."""
+    values = tried.fitted.values
+    return values[len(values) - len(tried.effect.numbers) :]
 
 
 def _is_sure(scene: Scene, tried: Tried) -> bool:
