@@ -43,6 +43,7 @@ class _Walk:
         self.gathering = gathering
         self.formats: list[str] = []
         self.appended: list[int] = []
+        self.lengths: dict[bytes, int] = {}
         self.position = _FIRST
 
     def run(self, tell: Progress) -> None:
@@ -56,7 +57,7 @@ class _Walk:
             jump = next((at for at in self.appended if self.position < at < end), None)
             if jump is not None:
                 self.position = jump
-            elif kind not in _KINDS or not self._follows(end):
+            elif kind not in _KINDS or not (self._follows(end) or self._usual(kind, begin, end)):
                 self._resync()
             else:
                 self._read(kind, begin, end)
@@ -75,11 +76,17 @@ class _Walk:
         _, kind = _HEAD.unpack_from(self.data, position)
         return kind in _KINDS or position in self.appended
 
+    def _usual(self, kind: int, begin: int, end: int) -> bool:
+        """Whether this is data, as long as the data of its channel before."""
+        key = self.data[begin : begin + 2]
+        return kind == ord("D") and end <= len(self.data) and self.lengths.get(key) == end - begin
+
     def _read(self, kind: int, begin: int, end: int) -> None:
         data, gathering = self.data, self.gathering
         if kind == ord("D") and end - begin >= 10:
             key, microseconds = struct.unpack_from("<HQ", data, begin)
             gathering.add(key, microseconds * 1000, data, begin + 2, end)
+            self.lengths[data[begin : begin + 2]] = end - begin
         elif kind == ord("F"):
             self.formats.append(data[begin:end].decode("utf-8", errors="replace"))
         elif kind == ord("A") and end - begin >= 4:
