@@ -65,8 +65,8 @@ def lookout(slow: float, leaves: float) -> Robot:
 
 
 def written(folder: Path, robot: Robot, low: float, seed: int) -> Path:
-    """A log of 120 s at 20 Hz, its heading in degrees within [low, low + 360)."""
-    times = np.arange(0.0, 120.0, 0.05)
+    """A log of 80 s at 20 Hz, its heading in degrees within [low, low + 360)."""
+    times = np.arange(0.0, 80.0, 0.05)
     states, modes = run(robot, "fast", [0.3], times)
     noise = np.deg2rad(1.0) * np.random.default_rng(seed).standard_normal(len(times))
     measured = wrapped(np.rad2deg(states[:, 0] + noise), low)
@@ -90,7 +90,7 @@ def judged(folder: Path, robot: Robot, low: float, seed: int) -> tuple[Report, S
     return verify(program, trace), switching
 
 
-@pytest.mark.parametrize("low", [-180.0, 0.0, -90.0])
+@pytest.mark.parametrize("low", [-180.0, 0.0])
 def test_a_heading_that_winds_across_the_seam_in_degrees_passes(tmp_path: Path, low: float) -> None:
     report, found = judged(tmp_path, lookout(30.0, -0.8), low, 1)
 

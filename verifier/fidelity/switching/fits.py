@@ -57,10 +57,10 @@ def fitted(setting: Setting, first: Integers, spans: Array, at: Array, modes: Ar
         for knot, (_, used) in zip(knots, chosen, strict=True)
     ]
     path = knots_between(first, np.max(ends, axis=0))
-    start, drift = _raw(setting, first, spans), np.zeros((len(first), len(setting.samples)))
+    start = _raw(setting, first, spans)
     for _ in range(FITS):
-        fan_ = _fan(setting, start, path, modes)
-        start, drift, covariance = _improved(setting, (start, drift), fan_, (path, at, chosen))
+        around = _fan(setting, start, path, modes)
+        start, covariance = _improved(setting, start, around, (path, at, chosen))
     return Fit(start, first, modes, covariance, np.asarray(is_good))
 
 
@@ -109,21 +109,22 @@ def _fan(setting: Setting, start: Array, knots: Integers, modes: Array) -> tuple
 
 def _improved(
     setting: Setting,
-    now: tuple[Array, Array],
+    start: Array,
     around: tuple[Array, Array],
     where: tuple[Integers, Array, list[tuple[Integers, Booleans]]],
-) -> tuple[Array, Array, Array]:
-    """One Gauss-Newton step: start (K, n), drift (K, D), covariance of the start (K, D, D).
+) -> tuple[Array, Array]:
+    """One Gauss-Newton step: the start (K, n) and its covariance (K, D, D).
 
-    now: start and drift. around: the paths from there and from nudged starts, with the nudges.
-    where: the knots of the paths, the times without drift, and the samples.
+    The drift acts linearly, so that each step finds it anew. around: the paths from the start and
+    from nudged ones, with the nudges. where: the knots of the paths, the times without drift, and
+    the samples.
     """
-    (start, drift), (paths, nudge), (knots, at, chosen) = now, around, where
+    (paths, nudge), (knots, at, chosen) = around, where
     widths, size, rows = _widths(setting), len(setting.samples), np.arange(len(start))[:, None]
     steepest = DRIFT * np.minimum(setting.tolerance, widths) / setting.horizon
     known = np.concatenate([PRIOR * widths, steepest]) ** -2.0
     normal = np.tile(np.diag(known), (len(start), 1, 1))
-    gradient = np.concatenate([np.zeros_like(drift), -known[size:] * drift], axis=1)
+    gradient = np.zeros((len(start), 2 * size))
     weights = np.maximum(setting.sigma, FLOOR * widths) ** -2.0
     for j, (each, (index, used)) in enumerate(zip(setting.samples, chosen, strict=True)):
         step = np.clip(each.knots[index] - knots[:, :1], 0, paths.shape[2] - 1)
@@ -133,7 +134,7 @@ def _improved(
         slope[:size] = (predicted[1:] - predicted[0]) / nudge.T[:, :, None]
         slope[size + j] = ahead
         slope = np.where(used, np.nan_to_num(slope), 0.0)
-        error = turned(each.values[index] - predicted[0], each.turn) - drift[:, j, None] * ahead
+        error = turned(each.values[index] - predicted[0], each.turn)
         error = np.where(used, np.nan_to_num(error), 0.0)
         normal += weights[j] * np.einsum("ikm,jkm->kij", slope, slope)
         gradient += weights[j] * np.einsum("ikm,km->ki", slope, error)
@@ -142,7 +143,7 @@ def _improved(
     moved = np.array(start)
     for j, each in enumerate(setting.samples):
         moved[:, each.column] = np.clip(moved[:, each.column] + change[:, j], *edges(each))
-    return moved, drift + change[:, size:], covariance[:, :size, :size]
+    return moved, covariance[:, :size, :size]
 
 
 def _widths(setting: Setting) -> Array:
