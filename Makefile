@@ -3,11 +3,11 @@ PYTHON ?= python3
 BIN := .venv/bin
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless bench schema gallery clean
+.PHONY: help demo test check format bless bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 22
 
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
@@ -44,9 +44,13 @@ schema: .venv/ready ## rewrite the JSON Schemas in docs/schema
 gallery: .venv/ready ## draw docs/img and docs/gallery.md
 	$(BIN)/python docs/draw_gallery.py
 
-bench: .venv/ready ## table lookup beside its peers, in one run
+bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(BIN)/python tests/bench/lookup.py
+	$(BIN)/python tests/bench/decode.py
+
+bench-large: .venv/ready ## memory and time on a log of 2 GB, which is made in out/
+	$(BIN)/python tests/study/large_log.py
 
 clean: ## remove what the targets made
 	rm -rf .venv out .pytest_cache .mypy_cache .ruff_cache .hypothesis
