@@ -2,7 +2,8 @@
 
 A correction of one rate is a Gaussian process with a Matérn kernel of smoothness 3/2 (a smoother
 one is too sure of itself between samples), seen through a few inducing places in the visited region
-(subset of regressors: Quinonero-Candela and Rasmussen 2005): g(x) = phi(x) . c with phi(x) = k(x, Z) L^-T, L L^T = k(Z, Z), so that c has the prior
+(subset of regressors: Quinonero-Candela and Rasmussen 2005). With L L^T = k(Z, Z) for the places Z
+it is g(x) = phi(x) . c, where phi(x) = k(x, Z) L^-T, so that c has the prior
 N(0, s^2 I) and g about the variance s^2 wherever the trace went. An angle enters by its place on
 the circle.
 
@@ -71,7 +72,7 @@ def basis_on(points: Array, turns: Array, length: float) -> Basis | None:
 
 
 def functions(basis: Basis, points: Array) -> Array:
-    """phi (..., K) at points (..., m)."""
+    """The functions phi (..., K) at points (..., m)."""
     squares = _distance(points, basis.places, basis.lengths, basis.turns)
     return np.asarray(_kernel(squares) @ basis.root)
 

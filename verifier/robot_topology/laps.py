@@ -34,7 +34,7 @@ SLOWEST: Final = 3.0
 """A lap takes at most so many times as long as the spec's, and at least the inverse."""
 SETTLED: Final = 4.0
 """Deviations of a lap's size from that of the late ones, in their own deviations, at most."""
-CALM: Final = 5e-4
+CALM: Final = 1e-3
 """Their deviations are taken to be at least this share of the size."""
 MANY: Final = 12
 """From so many laps on, the correlation of successive ones is believed."""
@@ -197,7 +197,7 @@ def _unsettled(stretch: Stretch, starts: Array) -> int:
     )
     late = sizes[count // 2 :]
     middle = np.median(late, axis=0)
-    spread = np.maximum(1.4826 * np.median(np.abs(late - middle), axis=0), CALM * middle)
+    spread = np.maximum(np.std(late, axis=0, ddof=1), CALM * middle)
     far = np.any(np.abs(sizes - middle) > SETTLED * spread, axis=1)[: count // 2]
     return int(np.argmin(np.append(far, False)))
 

@@ -43,6 +43,8 @@ def _feature(
     point = scene.portrait.fixed_points[index]
     claim = claim_on(scene, is_cycle=False, index=index)
     near = refit if refit is not None and refit.is_visited else None
+    if rest is not None and not rest.is_long and near is not None and near.at is not None:
+        rest = None  # The refitted field knows it better.
     numbers = tuple(
         _number(scene, point, claim, j, _seen(scene, point, rest, j), _refitted(near, j))
         for j in range(len(scene.axes))

@@ -81,7 +81,7 @@ def refitted_point(view: RefitView, point: FixedPoint) -> RefittedPoint:
         at = tuple(
             normal(float(v), float(e), view.confidence) for v, e in zip(place, error, strict=True)
         )
-    passes = min(passes_near(scene, refit, place), passes_near(scene, refit, point.at))
+    passes = passes_near(scene, refit, place)
     return RefittedPoint(at, float(np.mean(arrived)), float(np.mean(alike)), passes)
 
 

@@ -28,11 +28,15 @@ FAR: Final = 0.15
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class RestingPlace:
-    """at: an estimate an axis. attractor: an index of the portrait's fixed points, -1 for none."""
+    """at: an estimate an axis. attractor: an index of the portrait's fixed points, -1 for none.
+
+    is_long: the error of `at` is known well.
+    """
 
     at: tuple[Estimate, ...]
     visits: int
     attractor: int
+    is_long: bool
 
     @property
     def place(self) -> Array:
@@ -64,8 +68,8 @@ def resting_places(scene: Scene, confidence: float) -> tuple[RestingPlace, ...]:
             stands_for[k] = i
             taken.add(i)
     for k, group in enumerate(groups):
-        at = resting_place(scene, tuple(group), settling, step, confidence)
-        found.append(RestingPlace(at, len(group), stands_for.get(k, -1)))
+        at, is_long = resting_place(scene, tuple(group), settling, step, confidence)
+        found.append(RestingPlace(at, len(group), stands_for.get(k, -1), is_long))
     return tuple(found)
 
 

@@ -27,7 +27,9 @@ SHARE: Final = 0.5
 SMALL: Final = 0.005
 """Of the domain: stands for the tolerance where none is declared."""
 MANY: Final = 3
-"""Visits whose own spread is told."""
+"""Visits, whose own spread is told."""
+FEWEST: Final = 4
+"""Batches, with fewer of which the error of a mean is hardly known."""
 BATCHES: Final = 20
 
 
@@ -64,8 +66,10 @@ def rests_of(scene: Scene, settling: float) -> tuple[Rest, ...]:
 
 def resting_place(
     scene: Scene, rests: tuple[Rest, ...], settling: float, step: float, confidence: float
-) -> tuple[Estimate, ...]:
+) -> tuple[tuple[Estimate, ...], bool]:
     """The mean place of rests, an estimate an axis, angles near that of the first rest.
+
+    And whether there is enough of it for the error to be known well.
 
     Its error is that between batches of one settling time or more, and with three visits or more
     that between visits, if it is larger.
@@ -84,9 +88,10 @@ def resting_place(
         between = np.std(visits, axis=0, ddof=1) / np.sqrt(len(visits))
         if np.any(between > error):
             error, count, value = np.maximum(error, between), len(visits), visits.mean(axis=0)
-    return tuple(
+    at = tuple(
         student(float(v), float(e), count, confidence) for v, e in zip(value, error, strict=True)
     )
+    return at, max(count, len(batches)) >= FEWEST
 
 
 def allowance(scene: Scene) -> Array:

@@ -23,6 +23,7 @@ SIZES: Final = 2.0 ** np.arange(0, 9)
 """Of the corrections, in tolerances per horizon."""
 BLOCK: Final = 2
 """Windows in a block: two horizons."""
+ROUNDING: Final = 1e-10
 
 
 def solved(rows: Equations, found: Array, least: Array) -> tuple[Array, Array]:
@@ -35,8 +36,18 @@ def solved(rows: Equations, found: Array, least: Array) -> tuple[Array, Array]:
     prior = _best_prior(information / effect, right / effect, least)
     precision = information / effect + np.diag(1.0 / prior)
     value = np.linalg.solve(precision, right / effect)
-    root: Array = np.linalg.cholesky(np.linalg.inv(precision)).astype(np.float64)
+    root: Array = _lower(np.linalg.inv(precision))
     return value.astype(np.float64), root
+
+
+def _root_of_inverse(precision: Array) -> Array:
+    """A matrix R (P, P) with R R' the inverse of `precision`, which is never formed.
+
+    The rows are scaled to a diagonal of ones first: coefficients differ by orders of magnitude.
+    """
+    scale = 1.0 / np.sqrt(np.diag(precision))
+    factor = np.linalg.cholesky((precision + precision.T) / 2.0 * np.outer(scale, scale))
+    return np.asarray(scale[:, None] * np.linalg.inv(factor).T, dtype=np.float64)
 
 
 def effect_of(rows: Equations, found: Array, least: Array) -> float:
@@ -82,7 +93,7 @@ def _prior(sizes: Array, count: int) -> Array:
 def _evidence(information: Array, right: Array, prior: Array) -> float:
     """The logarithm of the marginal likelihood, but for a constant."""
     root = np.sqrt(prior)
-    lower = np.linalg.cholesky(np.eye(len(root)) + root[:, None] * information * root)
+    lower = _lower(np.eye(len(root)) + root[:, None] * information * root)
     projected = np.linalg.solve(lower, root * right)
     return float(0.5 * projected @ projected - np.sum(np.log(np.diag(lower))))
 
@@ -96,3 +107,11 @@ def _design_effect(rows: Equations, step: Array, precision: Array) -> float:
     spread = np.sum(summed * np.linalg.solve(precision, summed.T).T)
     expected = np.trace(np.linalg.solve(precision, np.sum(rows.information, axis=0)))
     return float(spread / max(expected, 1e-300))
+
+
+def _lower(matrix: Array) -> Array:
+    """Cholesky's factor of a matrix that is positive definite but for rounding."""
+    even = 0.5 * (matrix + matrix.T)
+    even[np.diag_indices_from(even)] *= 1.0 + ROUNDING
+    even[np.diag_indices_from(even)] += ROUNDING * np.mean(np.diag(even))
+    return np.linalg.cholesky(even).astype(np.float64)
