@@ -20,7 +20,7 @@ from runtime.arrays import Array
 
 SPACING: Final = 0.33
 """Distance of neighbouring places, in lengths."""
-MOST: Final = 150
+MOST: Final = 100
 """Places at most."""
 NEAR: Final = 0.4
 """A place is kept where a sample is within so many lengths."""
@@ -47,13 +47,14 @@ class Basis:
         return len(self.places)
 
 
-def basis_on(points: Array, turns: Array, length: float) -> Basis | None:
+def basis_on(points: Array, turns: Array, length: float, least: Array) -> Basis | None:
     """The basis on the region that `points` (N, m) visit; None where it would be too large.
 
-    length: of the kernel on each axis, as a share of what was visited of it.
+    length: of the kernel on each axis, as a share of what was visited of it, which counts as
+    `least` (m,) where it was less.
     """
     low, high = np.quantile(points, 0.005, axis=0), np.quantile(points, 0.995, axis=0)
-    size = np.maximum(high - low, 1e-9 * (np.abs(low) + np.abs(high) + 1.0))
+    size = np.maximum(high - low, least)
     size = np.where(turns > 0.0, np.minimum(size, turns), size)
     count = 1 + int(np.ceil(1.0 / (SPACING * length)))
     axes = [

@@ -2,7 +2,7 @@
 
 The errors at all samples of a window are linear in its start state and in the coefficients c, by
 the variational equation S' = J S + dr/dc along the window's path. The starts are eliminated window
-by window (Schur's complement), so each window brings a P x P matrix, whatever its length.
+by window: what they can explain is projected out of the errors and of their derivatives by c.
 
 Letters: W windows, S steps, n states, D axes, K functions, P coefficients.
 """
@@ -20,8 +20,12 @@ from verifier.robot_topology.corrected import Corrected, corrected_slopes, spec_
 
 FLOOR: Final = 1e-6
 """Noise is at least this share of the domain."""
+LEAST: Final = 0.01
+"""Of a domain: the visited region is taken to be at least so wide."""
 START: Final = 0.1
 """A start is within this share of the domain of where it is sought."""
+LARGEST: Final = 1e12
+"""An error that changes by so many deviations with a coefficient is none to build on."""
 SHAPED_BY: Final = 1000
 """Samples that the visited region is told from."""
 
@@ -56,28 +60,29 @@ class Job:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Equations:
-    """Per window: information (W, P, P) and score (W, P), with the starts eliminated.
+    """The errors as linear in the coefficients, the starts eliminated: R rows a window.
 
-    The best start for a change dc of the coefficients is off by `move - response @ dc`: (W, D),
-    (W, D, P). paths (W, S + 1, D).
+    residual (W, R) and design (W, R, P), in deviations of the noise. The best start for a change
+    dc of the coefficients is off by `move - response @ dc`: (W, D), (W, D, P). paths (W, S + 1, D).
     """
 
-    information: Array
-    score: Array
+    residual: Array
+    design: Array
     move: Array
     response: Array
     paths: Array
 
     @property
     def is_finite(self) -> Booleans:
-        """(W,) whether the path stayed in the domain."""
-        return np.asarray(np.all(np.isfinite(self.paths), axis=(1, 2)))
+        """(W,) whether the path stayed in the domain, and nothing grew beyond bounds."""
+        inside = np.all(np.isfinite(self.paths), axis=(1, 2))
+        return np.asarray(inside & np.all(np.abs(self.design) < LARGEST, axis=(1, 2)))
 
     def part(self, good: Booleans) -> "Equations":
         """Some of the windows."""
         return Equations(
-            self.information[good],
-            self.score[good],
+            self.residual[good],
+            self.design[good],
             self.move[good],
             self.response[good],
             self.paths[good],
@@ -97,7 +102,7 @@ def job_of(study: Study, chosen: Integers, length: float) -> Job | None:
     turns = np.array([each.turn for each in plan.samples])
     measured = _measured(study, knots, past)
     is_state = grid.columns < plan.model.states
-    basis = basis_on(_visited(study, measured, chosen, columns), turns, length)
+    basis = basis_on(_visited(study, measured, chosen, columns), turns, length, LEAST * widths)
     if basis is None:
         return None
     field = Corrected(
@@ -133,11 +138,10 @@ def equations(job: Job, start: Array, coefficients: Array) -> Equations:
     )
     rooted = np.sqrt(np.where(np.isfinite(residual), job.weight, 0.0))
     sensitive = _sensitivities(job, np.nan_to_num(states), coefficients)
-    rows = residual.shape[1] * residual.shape[2]
-    design = (rooted[..., None] * sensitive).reshape(len(start), rows, -1)
-    right = (rooted * np.nan_to_num(residual)).reshape(len(start), rows, 1)
-    crossed = np.swapaxes(design, 1, 2)
-    return _eliminated(job, crossed @ design, (crossed @ right)[..., 0], paths)
+    count, rows = len(start), residual.shape[1] * residual.shape[2]
+    design = (rooted[..., None] * sensitive).reshape(count, rows, -1)
+    right = (rooted * np.nan_to_num(residual)).reshape(count, rows)
+    return _eliminated(job, design, right, paths)
 
 
 def _measured(study: Study, knots: Integers, past: Booleans) -> Array:
@@ -205,14 +209,21 @@ def _sensitivities(job: Job, states: Array, coefficients: Array) -> Array:
     return found
 
 
-def _eliminated(job: Job, whole: Array, right: Array, paths: Array) -> Equations:
-    """The normal equations (W, D + P, ...) without the start states."""
+def _eliminated(job: Job, design: Array, right: Array, paths: Array) -> Equations:
+    """Rows (W, R, D + P) without what the start states can explain."""
     axes = len(job.widths)
-    of_start = whole[:, :axes, :axes] + np.diag((START * job.widths) ** -2.0)
-    mixed = whole[:, :axes, axes:]
-    inverse: Array = np.linalg.inv(of_start).astype(np.float64)
-    response = inverse @ mixed
-    move = (inverse @ right[:, :axes, None])[..., 0]
-    information = whole[:, axes:, axes:] - np.swapaxes(mixed, 1, 2) @ response
-    score = right[:, axes:] - np.einsum("wdp,wd->wp", mixed, move)
-    return Equations(information, score, move, response, paths)
+    of_start, rest = design[..., :axes], design[..., axes:]
+    # What is known of the start beforehand stands as D further rows.
+    known = np.broadcast_to(np.diag(1.0 / (START * job.widths)), (len(design), axes, axes))
+    of_start = np.concatenate([of_start, known], axis=1)
+    nothing = np.zeros((len(design), axes, rest.shape[-1]))
+    rest = np.concatenate([rest, nothing], axis=1)
+    right = np.concatenate([right, np.zeros((len(design), axes))], axis=1)
+    normal = np.einsum("wri,wrj->wij", of_start, of_start)
+    inverse: Array = np.linalg.inv(normal).astype(np.float64)
+    response = np.einsum("wij,wrj,wrp->wip", inverse, of_start, rest, optimize=True)
+    move = np.einsum("wij,wrj,wr->wi", inverse, of_start, right, optimize=True)
+    for i in range(axes):
+        rest = rest - of_start[..., i, None] * response[:, None, i]
+    right = right - np.einsum("wri,wi->wr", of_start, move)
+    return Equations(right, rest, move, response, paths)

@@ -36,7 +36,7 @@ def solved(rows: Equations, found: Array, least: Array) -> tuple[Array, Array]:
     prior = _best_prior(information / effect, right / effect, least)
     precision = information / effect + np.diag(1.0 / prior)
     value = np.linalg.solve(precision, right / effect)
-    root: Array = _lower(np.linalg.inv(precision))
+    root = _lower(np.linalg.inv(precision).astype(np.float64))
     return value.astype(np.float64), root
 
 
@@ -58,7 +58,7 @@ def effect_of(rows: Equations, found: Array, least: Array) -> float:
         prior = _best_prior(information / effect, right / effect, least)
         precision = information + effect * np.diag(1.0 / prior)
         value = np.linalg.solve(precision, right)
-        effect = max(1.0, _design_effect(rows, value - found, precision))
+        effect = max(1.0, _design_effect(rows, value - found, information, precision))
     return effect
 
 
@@ -71,8 +71,9 @@ def evidence_of(rows: Equations, found: Array, least: Array, effect: float) -> f
 
 def _sums(rows: Equations, found: Array) -> tuple[Array, Array]:
     """The normal equations of all windows, for the coefficients themselves."""
-    information = np.sum(rows.information, axis=0)
-    return information, np.sum(rows.score, axis=0) + information @ found
+    design = rows.design.reshape(-1, rows.design.shape[-1])
+    information = design.T @ design
+    return information, design.T @ rows.residual.ravel() + information @ found
 
 
 def _best_prior(information: Array, right: Array, least: Array) -> Array:
@@ -98,14 +99,15 @@ def _evidence(information: Array, right: Array, prior: Array) -> float:
     return float(0.5 * projected @ projected - np.sum(np.log(np.diag(lower))))
 
 
-def _design_effect(rows: Equations, step: Array, precision: Array) -> float:
+def _design_effect(rows: Equations, step: Array, information: Array, precision: Array) -> float:
     """By how much more the scores of blocks spread than information says, on the average."""
-    scores = rows.score - rows.information @ step
+    left = rows.residual - rows.design @ step
+    scores = np.einsum("wrp,wr->wp", rows.design, left)
     count = max(1, len(scores) // BLOCK)
     summed = np.zeros((count, scores.shape[1]))
     np.add.at(summed, np.arange(len(scores)) * count // len(scores), scores)
     spread = np.sum(summed * np.linalg.solve(precision, summed.T).T)
-    expected = np.trace(np.linalg.solve(precision, np.sum(rows.information, axis=0)))
+    expected = np.trace(np.linalg.solve(precision, information))
     return float(spread / max(expected, 1e-300))
 
 
