@@ -136,7 +136,11 @@ class _Table:
             columns=columns,
             times=np.concatenate([np.zeros(0, dtype=np.int64), *self.times]),
             time_column=self.clocked.column,
-            losses=tuple(Loss(cause, n, details[cause]) for cause, n in self.losses.items()),
+            losses=tuple(
+                Loss(cause, self.losses[cause], detail)
+                for cause, detail in details.items()
+                if cause in self.losses
+            ),
             notes=tuple(self._notes(self.clocked)),
         )
 
