@@ -3,8 +3,7 @@
 `import specc` is cheap; what a name stands for is loaded when it is first used.
 """
 
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False  # `typing` would be the first thing that a command waits for
 if TYPE_CHECKING:
     from compiler.check import check as check
     from compiler.compile import Compiled as Compiled

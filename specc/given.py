@@ -17,8 +17,15 @@ Value: TypeAlias = float | str
 Part: TypeAlias = State | Control
 
 
-def settings_for(parts: Sequence[Part], given: Mapping[str, Value], what: str) -> dict[str, float]:
+def settings_for(
+    parts: Sequence[Part],
+    given: Mapping[str, Value],
+    what: str,
+    elsewhere: Mapping[str, str] | None = None,
+) -> dict[str, float]:
     """SI values of `given`, each of one of the `parts`.
+
+    elsewhere: names that belong to another option, with what to write instead.
 
     Raises:
         SpecError: with every name that is no `what`, and every value that can't be used.
@@ -28,7 +35,8 @@ def settings_for(parts: Sequence[Part], given: Mapping[str, Value], what: str) -
     problems: list[Diagnostic] = []
     for name, value in given.items():
         if name not in known:
-            remedy = did_you_mean(name, list(known)) or there_are(list(known))
+            remedy = (elsewhere or {}).get(name) or did_you_mean(name, list(known))
+            remedy = remedy or there_are(list(known))
             problems.append(_problem("V341", name, value, f"no {what} is named '{name}'", remedy))
             continue
         try:

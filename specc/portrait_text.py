@@ -9,6 +9,7 @@ from verifier.topology.features import (
     Basins,
     Cycle,
     FixedPoint,
+    Held,
     Portrait,
     Reaches,
     Separatrix,
@@ -56,9 +57,7 @@ def _sweep_summary(found: Sweep) -> str:
 def portrait_summary(portrait: Portrait) -> str:
     """Everything that a portrait found, one line each."""
     axes = ", ".join(axis.name for axis in portrait.axes)
-    held = ", ".join(
-        f"{h.name} = {h.label or f'{h.value / h.unit.scale:g}'}" for h in portrait.held
-    )
+    held = ", ".join(f"{held.name} = {_value(held)}" for held in portrait.held)
     rows = [f"{portrait.name} over {axes}" + (f", at {held}" if held else "")]
     if not portrait.fixed_points and not _is_proved_empty(portrait):
         rows.append("  no fixed points found")
@@ -70,6 +69,12 @@ def portrait_summary(portrait: Portrait) -> str:
     rows += [f"  {_sentence(text)}" for text in proof_sentences(portrait)]
     rows += [f"  {note}" for note in portrait.notes]
     return "\n".join(rows)
+
+
+def _value(held: Held) -> str:
+    """What is held: a number with its unit, or the name of a discrete value."""
+    unit = "" if held.unit.text == "1" else f" {held.unit.text}"
+    return held.label or f"{held.value / held.unit.scale:.6g}{unit}"
 
 
 def _is_proved_empty(portrait: Portrait) -> bool:

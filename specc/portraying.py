@@ -8,6 +8,7 @@ from typing import Final, TypeAlias, final
 import numpy as np
 
 from runtime.program import Control, Kind, Program, State
+from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.given import Value, settings_for
 from specc.loading import as_program
@@ -26,6 +27,7 @@ SMALL: Final = Detail(trajectories=2, basins=48)
 """For one of many panels."""
 
 MOST_PANELS: Final = 24
+MOST_AXES: Final = 3
 
 
 @final
@@ -71,14 +73,18 @@ def sweep(
     program = as_program(spec)
     chosen = swept_values(program, name, values) if isinstance(values, str) else values
     if not 1 <= len(chosen) <= MOST_PANELS:
-        message = f"a sweep shows 1 to {MOST_PANELS} values (got {len(chosen)})"
-        raise fault("V342", name, message, f"write {name}=LOW:HIGH:COUNT")
+        raise _count_refused(name, len(chosen))
     names = _without(program, axes, name)
     given = held or {}
     panels = [_portrait(program, names, {**given, name: v}, SMALL) for v in chosen]
     if name == program.field.mode:
         panels = [_of_its_mode(panel) for panel in panels]
     return Sweep(name, tuple(panels))
+
+
+def _count_refused(name: str, count: int) -> SpecError:
+    message = f"a sweep shows 1 to {MOST_PANELS} values (got {count})"
+    return fault("V342", name, message, f"write {name}=LOW:HIGH:COUNT")
 
 
 def _of_its_mode(panel: Portrait) -> Portrait:
@@ -132,7 +138,9 @@ def swept_values(program: Program, name: str, text: str) -> tuple[Value, ...]:
     if "," in text or (isinstance(part, State) and part.kind is Kind.DISCRETE):
         return tuple(value.strip() for value in text.split(","))
     pieces = [piece.strip() for piece in text.split(":")]
-    if len(pieces) not in {1, 3} or not pieces[-1].isdigit() or int(pieces[-1]) < 1:
+    if len(pieces) in {1, 3} and pieces[-1].isdigit() and not 1 <= int(pieces[-1]) <= MOST_PANELS:
+        raise _count_refused(name, int(pieces[-1]))
+    if len(pieces) not in {1, 3} or not pieces[-1].isdigit():
         message = "this is no range of values"
         raise fault("V342", f"{name}={text}", message, f"write {name}=LOW:HIGH:COUNT or a count")
     count = int(pieces[-1])
@@ -177,6 +185,9 @@ def _part(program: Program, name: str) -> State | Control:
 def _portrait(
     program: Program, axes: Sequence[str] | None, held: Mapping[str, Value], detail: Detail
 ) -> Portrait:
+    if axes is not None and len(axes) > MOST_AXES:
+        message = f"a portrait has at most {MOST_AXES} axes (got {', '.join(axes)})"
+        raise fault("V346", program.source.file, message, "hold the other states by `--at`")
     parts: tuple[State | Control, ...] = (*program.states, *program.controls)
     settings = settings_for(parts, held, "state or control")
     try:

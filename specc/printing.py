@@ -7,7 +7,8 @@ from pathlib import Path
 from compiler.compile import Compiled
 from compiler.quantities import rate_text
 from runtime.arrays import Array
-from runtime.program import Kind, Program, Unit
+from runtime.integrators import MOST_STEPS
+from runtime.program import Kind, Program, State, Unit
 from runtime.rollout import Ending, Rollout
 from runtime.table import Table
 
@@ -78,7 +79,7 @@ def rollout_record(program: Program, rollout: Rollout) -> dict[str, object]:
             s.name: _column(rollout.states[:, i], s.unit) for i, s in enumerate(program.states)
         },
         "controls": {
-            c.name: float(rollout.controls[i]) / c.unit.scale
+            c.name: float(f"{rollout.controls[i] / c.unit.scale:.15g}")
             for i, c in enumerate(program.controls)
         },
         "outputs": {
@@ -103,6 +104,28 @@ def _switches(program: Program, rollout: Rollout) -> list[dict[str, object]]:
 
 def _column(values: Array, unit: Unit) -> list[float | None]:
     return [v / unit.scale if math.isfinite(v) else None for v in values.tolist()]
+
+
+def incomplete(program: Program, rollout: Rollout) -> str:
+    """What to do about a run that took more steps than one may have; empty for any other."""
+    if rollout.ending is not Ending.TOO_MANY_STEPS:
+        return ""
+    end = float(rollout.ended_at)
+    start = " ".join(
+        f"--start {state.name}={_spelled(state, value)}"
+        for state, value in zip(program.states, rollout.ended_in.tolist(), strict=True)
+    )
+    return (
+        f"incomplete: {MOST_STEPS:,} steps reach {end:.6g} s, not {float(rollout.times[-1]):.6g} s"
+        f"\ntake a shorter duration, or go on from there: {start}"
+    )
+
+
+def _spelled(state: State, value: float) -> str:
+    """A value of a state as `--start` reads it."""
+    if state.kind is Kind.DISCRETE:
+        return state.values[int(value)]
+    return f"{value / state.unit.scale:.6g}"
 
 
 def rollout_summary(program: Program, rollout: Rollout) -> str:

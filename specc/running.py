@@ -1,9 +1,9 @@
 """A behavior run alone, from what a user gives: numbers in the variables' own units."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from runtime.program import Program
+from runtime.program import Control, Program, State
 from runtime.rollout import Rollout
 from runtime.simulate import simulate as run
 from specc.faults import fault
@@ -26,11 +26,20 @@ def simulate(
         SpecError: a name that it does not have, or a value outside its domain.
     """
     program = as_program(spec)
-    begin = settings_for(program.states, start or {}, "state")
-    held = settings_for(program.controls, controls or {}, "control")
+    begin = settings_for(
+        program.states, start or {}, "state", _belongs(program.controls, "control", "--set")
+    )
+    held = settings_for(
+        program.controls, controls or {}, "control", _belongs(program.states, "state", "--start")
+    )
     step = None if every is None else seconds(every, "every")
     try:
         return run(program, begin, seconds(duration), held, step)
     except ValueError as error:
         see = "see `specc simulate --help`"
         raise fault("V342", program.source.file, str(error), see) from error
+
+
+def _belongs(parts: Sequence[State | Control], what: str, option: str) -> dict[str, str]:
+    """What to write for names that belong to another option."""
+    return {part.name: f"it is a {what}: write {option} {part.name}=..." for part in parts}

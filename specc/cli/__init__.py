@@ -1,17 +1,20 @@
-"""The command line: parsing and printing only; the work is done in the modules of `specc`."""
+"""The command line: parsing and printing only; the work is done in the modules of `specc`.
 
-import gc
-import io
-import os
+Little is imported here, so that hardly anything comes before `entry`, which knows what Ctrl-C is.
+"""
+
 import sys
-import traceback
-from collections.abc import Sequence
 
-from specc.cli.status import Status
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(arguments: "Sequence[str] | None" = None) -> int:
     """Run `specc` and return its exit status (see `specc.cli.status`)."""
+    import io
+    import os
+
     # Looking for pydantic's plugins costs a tenth of a second, and we have none.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     for stream in (sys.stdout, sys.stderr):
@@ -25,14 +28,51 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def entry() -> None:
     """What the installed `specc` command calls; the one place where an exception becomes a 3."""
+    try:
+        status = _watched()
+    except KeyboardInterrupt:
+        from specc.cli.interrupts import INTERRUPTED, deaf
+
+        deaf()
+        sys.stderr.write(INTERRUPTED)
+        status = 130
+    sys.exit(status)
+
+
+def _watched() -> int:
+    """The status of a run during which Ctrl-C acts at once, and after which it does nothing."""
+    import gc
+
+    from specc.cli.interrupts import deaf, hear_at_once
+
     # Loading libraries makes no garbage, and looking for it takes a tenth of the start-up.
     gc.set_threshold(100_000)
+    hear_at_once()
     try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.stderr.write("\ninterrupted; nothing was left half-written\n")
-        sys.exit(130)
+        status = main()
+        status = _flushed() or status
     except Exception:  # noqa: BLE001  the last line of defence
+        import traceback
+
+        from specc.cli.status import Status
+
         traceback.print_exc()
         sys.stderr.write("\nthis is a bug in specc, not in your spec or trace; please report it\n")
-        sys.exit(Status.BUG)
+        status = Status.BUG
+    deaf()
+    return status
+
+
+def _flushed() -> int:
+    """0 where all results have reached standard output; else a status, and the reason is told."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        import os
+
+        from specc.cli.app import failed
+
+        # What is left in the buffer would be told again at the end, and by Python.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return failed(error)
+    return 0

@@ -1,5 +1,6 @@
 """The commands, in the order in which a user meets them, and how a failure ends."""
 
+import errno
 import sys
 from collections.abc import Sequence
 from typing import Annotated
@@ -9,6 +10,7 @@ from typer.exceptions import TyperException
 
 import specc
 from spec_schema.diagnostics import SpecError
+from spec_schema.suggest import did_you_mean
 from specc.cli.check import check
 from specc.cli.compare import compare
 from specc.cli.compile import compile_
@@ -80,19 +82,49 @@ def run(arguments: Sequence[str] | None = None) -> int:
         raise KeyboardInterrupt from None
     except TyperException as error:
         say(f"specc: {_usage(error)}", "bold red")
-        say("see `specc --help`, or `specc COMMAND --help` for a command's options and examples")
+        say(_see(sys.argv[1:] if arguments is None else arguments))
         return Status.BAD_INPUT
     except OSError as error:
-        say(f"{error.filename}: {error.strerror}" if error.filename else str(error), "bold red")
-        return Status.BAD_INPUT
+        return failed(error)
+    if outcome == Status.INTERRUPTED and not isinstance(outcome, Status):
+        raise KeyboardInterrupt  # typer's own; a command with something to tell returns ours
     return outcome if isinstance(outcome, int) else Status.YES
+
+
+def failed(error: OSError) -> Status:
+    """Say what the system refused: a file, or standard output where it names none."""
+    why = str(error.strerror or error).lower()
+    if error.filename:
+        say(f"{error.filename}: {why}", "bold red")
+    elif error.errno != errno.EPIPE:
+        full = error.errno in {errno.ENOSPC, errno.EIO, errno.EBADF}
+        say(f"standard output can't be written: {why}" if full else why, "bold red")
+    return Status.BAD_INPUT
+
+
+def _see(arguments: Sequence[str]) -> str:
+    """Where the options are told: those of the command, where one is named."""
+    commands = {command.name for command in app.registered_commands}
+    named = next((word for word in arguments if word in commands), None)
+    if named is None:
+        return "see `specc --help`, or `specc COMMAND --help` for a command's options and examples"
+    return f"see `specc {named} --help` for its options and examples"
 
 
 def _usage(error: TyperException) -> str:
     """What is wrong with the arguments, and with which."""
     words = str(error).removeprefix("Value error, ")
+    if words.startswith("No such option"):
+        meant = did_you_mean(getattr(error, "option_name", ""), _options(error))
+        return f"{words}; {meant}" if meant else words
     option = next(iter(getattr(getattr(error, "param", None), "opts", ())), "")
     return f"{option}: {words}" if option.startswith("-") and option not in words else words
+
+
+def _options(error: TyperException) -> list[str]:
+    """The options of the command that was called."""
+    command = getattr(getattr(error, "ctx", None), "command", None)
+    return [option for part in getattr(command, "params", ()) for option in part.opts]
 
 
 def _wants(arguments: Sequence[str], form: str) -> bool:

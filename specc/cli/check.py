@@ -95,7 +95,7 @@ def _check_claims(
     if form is CheckFormat.JSON:
         records = [finding_record(program, finding) for program, finding in found]
         print_json({"mistakes": mistakes, "claims": records})
-    if form is not CheckFormat.JSON or interrupted:
+    if found if interrupted else form is not CheckFormat.JSON:
         say(totals_text([finding for _, finding in found]), "bold")
     if interrupted:
         say(f"interrupted; {_unjudged(files, found)} not judged", "bold yellow")

@@ -62,5 +62,14 @@ def one_assignment(setting: str) -> tuple[str, str]:
 
 
 def names_of(listed: str | None) -> tuple[str, ...] | None:
-    """`"x, v"` as two names; None where nothing was given."""
-    return tuple(name.strip() for name in listed.split(",")) if listed else None
+    """`"x, v"` as two names; None where nothing was given.
+
+    Raises:
+        typer.BadParameter: a name is missing.
+    """
+    if listed is None:
+        return None
+    names = tuple(name.strip() for name in listed.split(","))
+    if not all(names):
+        raise typer.BadParameter(f"--axes: write names of states, such as x,v (got '{listed}')")
+    return names

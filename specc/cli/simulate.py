@@ -7,6 +7,7 @@ import typer
 
 from specc.cli.console import print_json, print_text, say
 from specc.cli.options import Format, FormatOption, Settings, SpecPath, assignments
+from specc.cli.status import Status
 from specc.cli.warming import warmed
 
 
@@ -27,12 +28,12 @@ def simulate(
         Path | None, typer.Option("--output", "-o", help="Record to this .mcap or .csv file.")
     ] = None,
     form: FormatOption = Format.TEXT,
-) -> None:
+) -> int:
     """Run a behavior alone, from a start, with its controls held; record it as MCAP or CSV.
 
     Sensed-only variables follow their `closure` or stay at `hold`. A run that leaves the domain
     stops there and says so. The recording carries the compiled spec: `specc verify` on it needs
-    nothing else.
+    nothing else. Exit status 1: it takes more steps than one run may have, and is incomplete.
 
     **Examples**
 
@@ -57,3 +58,7 @@ def simulate(
         print_json(printing.rollout_record(program, rollout))
     else:
         print_text(printing.rollout_summary(program, rollout))
+    if told := printing.incomplete(program, rollout):
+        say(told, "bold red")
+        return Status.NO
+    return Status.YES

@@ -171,6 +171,33 @@ def test_simulate_says_where_a_run_left_the_domain(capsys: pytest.CaptureFixture
     assert "x" in record["detail"]
 
 
+def test_a_run_that_takes_too_many_steps_says_what_to_do_and_is_no_success(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["simulate", VDP, "--start", "x=1", "-d", "1e9", "-o", "run.csv"]) == 1
+
+    err = capsys.readouterr().err
+    assert "incomplete: 1,000,000 steps reach" in err
+    assert "--start x=" in err
+    assert Path("run.csv").is_file()
+
+
+def test_a_portrait_names_units_of_what_is_held_and_gives_round_numbers_round(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = Path(VDP).read_text(encoding="utf-8")
+    Path("turning.yaml").write_text(
+        text.replace(
+            "control:\n", "control:\n  tilt: {unit: deg, domain: [-60, 60], default: -60}\n"
+        ).replace("mu*(1 - x**2)*v", "mu*(1 - x**2)*v + 0*tilt"),
+        encoding="utf-8",
+    )
+
+    assert main(["portrait", "turning.yaml", "-o", "p.json"]) == 0
+    assert "tilt = -60 deg" in capsys.readouterr().out
+    assert json.loads(Path("p.json").read_text(encoding="utf-8"))["held"]["tilt"] == -60.0
+
+
 def test_verify_writes_reports(capsys: pytest.CaptureFixture[str]) -> None:
     trace = str(SPECS / "recordings" / "scitos" / "wall_following.csv")
     run = ["verify", trace, "--spec", str(SPECS / "keep_left.yaml")]
@@ -204,6 +231,14 @@ def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
         (["portrait", VDP, "--sweep", "mu=1:2"], "write mu=LOW:HIGH:COUNT"),
         (["portrait", VDP, "--sweep", "mu=1:9:3"], "outside the domain"),
         (["portrait", VDP, "--sweep", "mu=99"], "1 to 24 values"),
+        (["portrait", VDP, "--sweep", "mu=1:2:0"], "1 to 24 values (got 0)"),
+        (["portrait", VDP, "--axes", "x,x"], "'x' stands twice among the axes"),
+        (["portrait", VDP, "--axes", "x,v,x,v"], "at most 3 axes"),
+        (["portrait", VDP, "--axes", ""], "write names of states, such as x,v"),
+        (["portrait", VDP, "--styl", "dark"], "did you mean '--style'?"),
+        (["portrait", VDP, "--styl", "dark"], "see `specc portrait --help`"),
+        (["simulate", VDP, "--set", "x=1"], "it is a state: write --start x=..."),
+        (["simulate", VDP, "--start", "mu=1"], "it is a control: write --set mu=..."),
         (["portrait", VDP, "--sweep", "mu=2", "--slices", "v=2"], "take one of"),
         (["portrait", VDP, "--against", "nu"], "no control is named 'nu'"),
         (["portrait", VDP, "--against", "mu=1"], "write mu=LOW:HIGH"),

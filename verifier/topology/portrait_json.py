@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from runtime.arrays import Array
+from runtime.program import Unit
 from verifier.topology.features import (
     AxisRange,
     Basins,
@@ -31,7 +32,7 @@ def as_json(portrait: Portrait) -> dict[str, object]:
         "behavior": portrait.name,
         "axes": [axis.name for axis in axes],
         "units": {part.name: part.unit.text for part in parts},
-        "domain": {a.name: [a.low / a.unit.scale, a.high / a.unit.scale] for a in axes},
+        "domain": {a.name: [_in_unit(end, a.unit) for end in (a.low, a.high)] for a in axes},
         "held": {held.name: _held(held) for held in portrait.held},
         "map": portrait.every > 0.0,
         "complete": portrait.completeness.complete,
@@ -60,7 +61,12 @@ def as_json(portrait: Portrait) -> dict[str, object]:
 
 
 def _held(held: Held) -> float | str:
-    return held.label or held.value / held.unit.scale
+    return held.label or _in_unit(held.value, held.unit)
+
+
+def _in_unit(value: float, unit: Unit) -> float:
+    """A value in the user's unit, without the last digit, which is rounding: 60 deg are 60."""
+    return float(f"{value / unit.scale:.15g}")
 
 
 def _fixed_point(axes: tuple[AxisRange, ...], point: FixedPoint) -> dict[str, object]:
@@ -128,7 +134,7 @@ def _basins(portrait: Portrait, basins: Basins) -> dict[str, object]:
 
 
 def _named(axes: tuple[AxisRange, ...], point: Array) -> dict[str, float]:
-    return {a.name: float(v) / a.unit.scale for a, v in zip(axes, point, strict=True)}
+    return {a.name: _in_unit(float(v), a.unit) for a, v in zip(axes, point, strict=True)}
 
 
 def _pairs(values: Sequence[complex]) -> list[list[float]]:

@@ -163,8 +163,11 @@ def _default_axes(program: Program) -> tuple[str, ...]:
 
 
 def _columns(program: Program, axes: tuple[str, ...]) -> tuple[int, ...]:
-    if len(axes) not in {1, 2, 3, 4} or len(set(axes)) != len(axes):
-        raise SliceError(f"a slice has one to four different axes (got {', '.join(axes)})")
+    twice = next((name for i, name in enumerate(axes) if name in axes[:i]), None)
+    if twice is not None:
+        raise SliceError(f"'{twice}' stands twice among the axes")
+    if len(axes) not in {1, 2, 3, 4}:
+        raise SliceError(f"a slice has one to four axes (got {', '.join(axes) or 'none'})")
     states = {state.name: i for i, state in enumerate(program.states)}
     for name in axes:
         if name not in states:
