@@ -48,7 +48,8 @@ def compare_features(program: Program, trace: Trace, study: Study | None) -> Fea
     except SliceError as error:
         return _nothing(f"not compared: {error}")
     rng = np.random.default_rng(SEED)
-    refit = None if study is None else refitted(study, allowance(scene))
+    anything = scene.portrait.fixed_points or scene.portrait.cycles
+    refit = refitted(study, allowance(scene)) if study is not None and anything else None
     view = None if refit is None else RefitView(scene, refit, refit.draws(DRAWS, rng), CONFIDENCE)
     places = resting_places(scene, CONFIDENCE)
     features = (
