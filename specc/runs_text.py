@@ -19,7 +19,13 @@ def runs_table(outcomes: Sequence[Outcome]) -> str:
     worst = together(outcomes)
     last = f"{'' if worst is None else f'{worst.upper()}  '}{counted(outcomes)}"
     return "\n\n".join(
-        part for part in (table([header, *rows]), section("why", _reasons(outcomes)), last) if part
+        part
+        for part in (
+            table([header, *rows]),
+            section("why", [wrapped(reason) for reason in reasons_of(outcomes)]),
+            last,
+        )
+        if part
     )
 
 
@@ -29,6 +35,11 @@ def runs_text(outcomes: Sequence[Outcome]) -> str:
     parts += [examination_text(each.examination) for each in verifications(outcomes)]
     parts += [render(each.error.diagnostics) for each in unusable(outcomes)]
     return "\n\n\n".join(parts)
+
+
+def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
+    """Why each recording that did not pass did not: `run.mcap: …`."""
+    return tuple(f"{_source(each)}: {_why(each)}" for each in outcomes if _why(each))
 
 
 def columns_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
@@ -63,10 +74,6 @@ def _row(outcome: Outcome, columns: Sequence[str]) -> tuple[str, ...]:
     lost = str(sum(loss.count for loss in report.losses))
     verdict = report.verdict.upper()
     return (report.trace.source, verdict, *cells, seen, seconds(report.trace.judged), lost)
-
-
-def _reasons(outcomes: Sequence[Outcome]) -> list[str]:
-    return [wrapped(f"{_source(each)}: {_why(each)}") for each in outcomes if _why(each)]
 
 
 def _source(outcome: Outcome) -> str:

@@ -3,16 +3,18 @@
 from collections.abc import Sequence
 from typing import Final
 
-from specc.figures.quantities import percent, quantity, seconds
+from specc.figures.quantities import number, percent, seconds
 from specc.pages.page import Page, RunRow, RunsPage
 from specc.pages.report_page import SIGNS, gathered, rendered
 from specc.runs import Outcome, Unusable, counted, together, verifications
-from specc.runs_text import column_of, columns_of
+from specc.runs_text import column_of, columns_of, reasons_of
 from specc.verifying import Verification
 from verifier.report.report import Coverage, Verdict
 
 DRAWN: Final = 6
 """With more recordings than these, the variables of those that passed get no figures."""
+MOST: Final = 8
+"""So many reasons stand at the top."""
 
 
 def runs_page(outcomes: Sequence[Outcome]) -> str:
@@ -37,7 +39,7 @@ def gathered_runs(outcomes: Sequence[Outcome]) -> RunsPage:
         verdict="unusable" if worst is None else str(worst),
         sign="!" if worst is None else SIGNS[worst],
         headline=counted(outcomes),
-        reasons=(),
+        reasons=reasons_of(outcomes)[:MOST],
         columns=(*columns, "coverage", "judged", "lost"),
         rows=tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes),
         how=how,
@@ -63,7 +65,7 @@ def _row(outcome: Outcome, anchor: str, columns: Sequence[str]) -> RunRow:
     report = outcome.report
     found = {column_of(report, r.name): r for r in report.variables}
     cells = [
-        (quantity(found[c].declared.departure, found[c].unit), str(found[c].standing))
+        (number(found[c].declared.departure / found[c].unit.scale), str(found[c].standing))
         if c in found
         else ("–", "")
         for c in columns

@@ -1,6 +1,7 @@
 """`specc verify` of many recordings: a table, one report, one exit status."""
 
 import json
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -17,17 +18,25 @@ SPECS = Path(__file__).parents[2] / "specs"
 VDP = str(SPECS / "van_der_pol.yaml")
 
 
-@pytest.fixture(autouse=True)
-def recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three robots made by scipy: one faithful, one far off, and one that is seen too briefly."""
+    folder = tmp_path_factory.mktemp("recordings")
+    _record(folder / "good.csv", mu=1.0, seconds=60.0)
+    _record(folder / "bad.csv", mu=2.0, seconds=60.0)
+    _record(folder / "short.csv", mu=1.0, seconds=1.0)
+    (folder / "torn.csv").write_text("")
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def recordings(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    _record("good.csv", mu=1.0, seconds=60.0)
-    _record("bad.csv", mu=2.0, seconds=60.0)
-    _record("short.csv", mu=1.0, seconds=1.0)
-    Path("torn.csv").write_text("")
+    for path in recorded.iterdir():
+        shutil.copy(path, path.name)
 
 
-def _record(name: str, mu: float, seconds: float) -> None:
+def _record(path: Path, mu: float, seconds: float) -> None:
     times = np.arange(0.0, seconds, 0.05)
     found = solve_ivp(
         lambda _, s: [s[1], mu * (1.0 - s[0] ** 2) * s[1] - s[0]],
@@ -39,7 +48,7 @@ def _record(name: str, mu: float, seconds: float) -> None:
     )
     noise = 0.01 * np.random.default_rng(1).standard_normal(found.y.shape)
     rows = np.column_stack([times, (found.y + noise).T, np.ones(len(times))])
-    Path(name).write_text("t,x,v,mu\n" + "\n".join(",".join(map(str, row)) for row in rows))
+    path.write_text("t,x,v,mu\n" + "\n".join(",".join(map(str, row)) for row in rows))
 
 
 def verify(*arguments: str) -> int:

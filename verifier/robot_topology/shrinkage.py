@@ -40,16 +40,6 @@ def solved(rows: Equations, found: Array, least: Array) -> tuple[Array, Array]:
     return value.astype(np.float64), root
 
 
-def _root_of_inverse(precision: Array) -> Array:
-    """A matrix R (P, P) with R R' the inverse of `precision`, which is never formed.
-
-    The rows are scaled to a diagonal of ones first: coefficients differ by orders of magnitude.
-    """
-    scale = 1.0 / np.sqrt(np.diag(precision))
-    factor = np.linalg.cholesky((precision + precision.T) / 2.0 * np.outer(scale, scale))
-    return np.asarray(scale[:, None] * np.linalg.inv(factor).T, dtype=np.float64)
-
-
 def effect_of(rows: Equations, found: Array, least: Array) -> float:
     """By how much the errors of blocks of windows spread more than independent ones."""
     information, right = _sums(rows, found)
