@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias, final
 
 import numpy as np
 
-from runtime.arrays import Array, Booleans, Integers, frozen
+from runtime.arrays import Array, Booleans, Integers
 from runtime.program import Binding, Kind, Program, State
 from spec_schema.diagnostics import Diagnostic, SpecError
 from verifier.traces.bindings import Bound, resolve, texts_of, wanted_by
@@ -59,7 +59,7 @@ def read_trace(
         )
     return Trace(
         source=str(path),
-        series={reading.bound.binding.name: _series(reading, start) for reading in readings},
+        series=_all_series(readings, start),
         constants={b.name: b.constant for b in program.bindings if b.constant is not None},
         start=start / 1e9,
         losses=losses,
@@ -141,7 +141,8 @@ def _run(samples: Samples, clock: Clock) -> _Run:
         times = samples.stamps
         usable = times > 0
     ordering = order(samples.topic, times, usable)
-    return _Run(clock, times[ordering.rows], ordering)
+    whole = ordering.rows.size == times.size and (ordering.rows[1:] > ordering.rows[:-1]).all()
+    return _Run(clock, times if whole else times[ordering.rows], ordering)
 
 
 def _readings(
@@ -186,12 +187,15 @@ def _reading(
     state = next((s for s in program.states if s.name == bound.binding.name), None)
     found = _measured(program, bound, state, topics[bound.topic], run)
     finite: Booleans = np.isfinite(found.values)
-    values = found.values[finite]
+    whole = bool(finite.all())
+    values = found.values if whole else found.values[finite]
+    times = run.times if whole else run.times[finite]
     if state is not None and state.kind is Kind.PERIODIC:
         values = np.unwrap(values, period=state.high - state.low)
     # A delay of decades leaves nothing to compare, as does one of centuries.
     delay = round(min(max(bound.binding.delay, -1e9), 1e9) * 1e9)
-    return _Reading(bound, run.clock, run.times[finite] - delay, values, found.losses, found.notes)
+    times = times - delay if delay else times
+    return _Reading(bound, run.clock, times, values, found.losses, found.notes)
 
 
 def _measured(
@@ -206,11 +210,29 @@ def _measured(
     return measured(binding, meaning, samples.columns[bound.column].rows(run.ordering.rows))
 
 
-def _series(reading: _Reading, start: int) -> Series:
-    binding = reading.bound.binding
-    times = (reading.times - start).astype(np.float64) / 1e9
-    clock = str(reading.clock)
-    return Series(binding.name, frozen(times), frozen(reading.values), binding.path, clock)
+def _all_series(readings: Sequence[_Reading], start: int) -> dict[str, Series]:
+    """The series; those of one topic share their times where they can, which are many."""
+    shared: dict[int, Array] = {}
+    series = {}
+    for reading in readings:
+        key = id(reading.times)
+        if key not in shared:
+            shared[key] = _seconds(reading.times, start)
+        binding = reading.bound.binding
+        values = reading.values.view()
+        values.setflags(write=False)
+        series[binding.name] = Series(
+            binding.name, shared[key], values, binding.path, str(reading.clock)
+        )
+    return series
+
+
+def _seconds(times: Integers, start: int) -> Array:
+    """Seconds since `start`, in an array that nobody can write to."""
+    seconds = (times - start).astype(np.float64)
+    seconds /= 1e9
+    seconds.setflags(write=False)
+    return seconds
 
 
 def _losses(

@@ -63,14 +63,24 @@ def measured(binding: Binding, meaning: Meaning, column: Column) -> Measured:
         if words and not np.isfinite(column.numbers).any():
             raise _not_numbers(binding, tuple(meaning.texts), words)
     unit = 1.0 if meaning.derived else binding.unit.scale
-    with np.errstate(over="ignore"):  # what overflows is counted as not finite
-        numbers = binding.scale * column.numbers * unit + binding.offset
+    numbers = _scaled(column.numbers, binding, unit)
     missing = int((~np.isfinite(numbers)).sum())
     where = f"{binding.name} at {binding.path}"
     losses = (Loss("no finite value", missing, where),) if missing else ()
     ignored = meaning.derived and binding.unit.scale != 1.0
     note = f"{where}: in radians, the unit {binding.unit.text} is not applied"
     return Measured(numbers, losses, (note,) if ignored else ())
+
+
+def _scaled(numbers: Array, binding: Binding, unit: float) -> Array:
+    """In SI; of long logs not copied more often than needed."""
+    if binding.scale == unit == 1.0 and binding.offset == 0.0:
+        return numbers
+    with np.errstate(over="ignore"):  # what overflows is counted as not finite
+        scaled = binding.scale * numbers
+        scaled *= unit
+        scaled += binding.offset
+    return scaled
 
 
 def _is_number(text: str) -> bool:

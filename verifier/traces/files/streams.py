@@ -162,8 +162,8 @@ class Gathering(Generic[Key]):
                     Messages(
                         channel=stream.channel,
                         count=stream.count,
-                        times=np.array(stream.times, dtype=np.int64),
-                        places=np.array(stream.places, dtype=np.uint32),
+                        times=np.frombuffer(stream.times, dtype=np.int64),
+                        places=np.frombuffer(stream.places, dtype=np.uint32),
                         values=stream.reader.finished() if stream.reader else None,
                     )
                 )

@@ -20,7 +20,9 @@ class Column:
     texts: tuple[str | None, ...] | None
 
     def rows(self, rows: Integers) -> "Column":
-        """These rows, in this order."""
+        """These rows, in this order; itself where these are all of them, in their order."""
+        if rows.size == self.numbers.size and (rows[1:] > rows[:-1]).all():
+            return self
         texts = self.texts
         if texts is not None:
             texts = tuple([texts[row] for row in rows])
@@ -54,6 +56,8 @@ def column(cells: Sequence[Cell]) -> Column:
 
 def joined(parts: Sequence[Column]) -> Column:
     """The parts, one after the other; numbers are written as text where any part has text."""
+    if len(parts) == 1:
+        return parts[0]
     numbers = np.concatenate([np.zeros(0), *(part.numbers for part in parts)])
     if all(part.texts is None for part in parts):
         return Column(numbers, None)
