@@ -21,7 +21,7 @@ from verifier.diagnosis.scene import Scene
 NUDGE: Final = 1e-5
 """The difference for derivatives by the start, as a share of the domain."""
 LOOSE: Final = 1e-9
-"""Directions of the start that the samples tell less of than this share stay where they are."""
+"""A ridge, as a share of what the samples tell of each start: directions they miss stay."""
 
 
 @final
@@ -117,10 +117,8 @@ def _projected(scene: Scene, r: Array, slopes: Array, starts: Array, sigma: Arra
     scale = sigma[owners(scene)][:, None]
     white, whole = r[:, :, None] / scale, slopes / scale
     of_start, of_numbers = whole[..., :d], whole[..., d:]
-    widths = np.array([each.width for each in scene.observed])
     normal = np.einsum("wri,wrk->wik", of_start, of_start)
-    ridge = LOOSE * np.trace(normal * np.outer(widths, widths), axis1=1, axis2=2) + 1e-300
-    normal = normal + ridge[:, None, None] * np.diag(widths**-2.0)
+    normal = normal + (LOOSE * normal + 1e-300) * np.eye(d)
     right = np.einsum("wri,wrk->wik", of_start, np.concatenate([white, of_numbers], axis=2))
     solved = np.linalg.solve(normal, right)
     moved = np.array(starts)

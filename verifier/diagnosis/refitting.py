@@ -8,7 +8,7 @@ import numpy as np
 from runtime.arrays import Array
 from verifier.diagnosis.altered import Effect
 from verifier.diagnosis.fitting import Fit, fit, information, intervals_of
-from verifier.diagnosis.parameters import Parameter, effect_of
+from verifier.diagnosis.parameters import NUDGE, Parameter, effect_of
 from verifier.diagnosis.profiled import profiled
 from verifier.diagnosis.residuals import owners
 from verifier.diagnosis.scene import Scene
@@ -66,18 +66,23 @@ def _by_label(scene: Scene, fitted: Fit, confidence: float) -> dict[str, tuple[f
 
 def _told(scene: Scene, taken: Fit, wanted: list[Parameter]) -> list[Parameter]:
     """As many of them, in order, as can be told apart from what is in already."""
-    effects: list[Effect] = [effect_of(each) for each in wanted]
-    values = (*taken.values, *(each.spec for each in wanted))
-    left = profiled(scene, (*taken.effects, *effects), values, taken.starts, taken.sigma)
-    white = left.slopes / taken.sigma[owners(scene)][:, None]
-    matrix = information(white)
-    kept = list(range(len(taken.values)))
-    told = []
-    for place, each in enumerate(wanted, start=len(taken.values)):
-        if _error(matrix, kept, place) < LOOSEST * each.size:
+    by_label = {each.label: each for each in wanted}
+    return [by_label[e.label] for e in apart(scene, taken, [effect_of(each) for each in wanted])]
+
+
+def apart(scene: Scene, base: Fit, effects: list[Effect]) -> list[Effect]:
+    """As many effects of one number each, in order, as can be told apart, sizes by their steps."""
+    neutral = tuple(value for each in effects for value in each.neutral)
+    values = (*base.values, *neutral)
+    left = profiled(scene, (*base.effects, *effects), values, base.starts, base.sigma)
+    matrix = information(left.slopes / base.sigma[owners(scene)][:, None])
+    kept = list(range(len(base.values)))
+    found = []
+    for place, each in enumerate(effects, start=len(base.values)):
+        if _error(matrix, kept, place) < LOOSEST * each.numbers[0].step / NUDGE:
             kept.append(place)
-            told.append(each)
-    return told
+            found.append(each)
+    return found
 
 
 def _error(matrix: Array, kept: list[int], place: int) -> float:

@@ -33,13 +33,15 @@ from verifier.report.diagnosis import CandidateKind
 
 MOST: Final = 5
 """So many are taken, at most."""
+STAYS: Final = 0.1
+"""And so much where it is asked whether an earlier one is still needed."""
 CLEAR: Final = 6.0
 """A candidate gains at least so much held-out log-likelihood: many are tried."""
 CLOSE: Final = 4.0
 """Candidates that gain as much but for this explain as well."""
 HINT: Final = 1.5
 """A linear forecast of the gain below this is not followed up."""
-MATTERS: Final = 0.1
+MATTERS: Final = 0.05
 """What is explained of a variable, root mean square, is at least this share of its tolerance."""
 SAME: Final = 0.02
 """Fits whose residuals differ by less than this share of what they explain are one and the same."""
@@ -127,7 +129,7 @@ def _pruned(scene: Scene, base: Fit, tolerance: dict[str, float]) -> Fit:
         thinning = correlation_time(scene, base.left.residual)
         lost = float(np.sum((both[0].likelihood - both[1].likelihood) / thinning))
         is_clear = lost - len(base.effects[place].numbers) >= CLOSE
-        if not (is_clear and _matters(scene, both[1], both[0], tolerance)):
+        if not (is_clear and _matters(scene, both[1], both[0], tolerance, STAYS)):
             return _pruned(scene, fewer, tolerance)
     return base
 
@@ -257,16 +259,18 @@ def _tried(
         held_out=held_out,
         gain=float(np.sum(gains)) - len(effect.numbers),
         share=min(float(np.sum(explained) / max(float(np.sum(beyond)), 1e-300)), 1.0),
-        matters=_matters(scene, reference, held_out, tolerance),
+        matters=_matters(scene, reference, held_out, tolerance, MATTERS),
     )
 
 
-def _matters(scene: Scene, before: Scored, after: Scored, tolerance: dict[str, float]) -> bool:
+def _matters(
+    scene: Scene, before: Scored, after: Scored, tolerance: dict[str, float], share: float
+) -> bool:
     """Whether what is explained of some variable is anything beside its tolerance."""
     counts = np.array([int(np.sum(each.used)) for each in scene.observed])
     allowed = np.array([tolerance.get(each.name, np.inf) for each in scene.observed])
     explained = np.sum(before.squares - after.squares, axis=0)
-    return bool(np.any(np.sqrt(np.maximum(explained, 0.0) / counts) > MATTERS * allowed))
+    return bool(np.any(np.sqrt(np.maximum(explained, 0.0) / counts) > share * allowed))
 
 
 def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:

@@ -1,0 +1,56 @@
+"""What was planted is what is named; the whole table is in tests/study/diagnosis.py."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import specc
+from tests.study.diagnosis import Row, diagnosed, is_right, named, program_of, rows
+from verifier.report.diagnosis import CandidateKind, Told
+from verifier.traces.read import read_trace
+
+HUSKY = Path(__file__).parents[3] / "specs" / "recordings" / "husky" / "husky.mcap"
+SOME = (
+    "nothing",
+    "dead zone 4 cm",
+    "dead time 0.3 s",
+    "distance in millimetres",
+    "turn logged 0.3 s late",
+    "x seen 0.1 too high",
+)
+CHOSEN = [next(row for row in rows() if row.planted == planted) for planted in SOME]
+
+
+@pytest.mark.parametrize("row", CHOSEN, ids=lambda row: row.planted)
+def test_what_was_planted_is_named(row: Row) -> None:
+    found = diagnosed(program_of(row.spec), row.made(11))
+
+    assert is_right(row, found), named(found)
+
+
+def test_a_field_that_bends_otherwise_is_no_matter_of_numbers() -> None:
+    """A turn rate that is cut beyond 0.3 rad/s: no number of the spec explains it."""
+    (row,) = (row for row in rows() if row.planted == "saturation 0.3 rad/s")
+
+    assert diagnosed(program_of(row.spec), row.made(5)).told is Told.STRUCTURE_DIFFERS
+
+
+@pytest.mark.slow
+def test_the_husky_without_delays_is_told_to_log_its_speed_and_its_gyro_late(
+    tmp_path: Path,
+) -> None:
+    text = (HUSKY.parents[2] / "husky_drive.yaml").read_text(encoding="utf-8")
+    spec = tmp_path / "husky.yaml"
+    spec.write_text(re.sub(r", delay: [0-9.]+ s", "", text), encoding="utf-8")
+    program = specc.load_program(spec)
+
+    found = diagnosed(program, read_trace(HUSKY, program, "auto"))
+
+    taken = {each.label: each for each in found.candidates if each.is_taken}
+    assert taken.keys() == {"late log of speed", "late log of turn"}
+    assert all(each.kind is CandidateKind.LATE_LOG for each in taken.values())
+    assert taken["late log of speed"].numbers[0].value == pytest.approx(-0.5, abs=0.06)
+    assert taken["late log of turn"].numbers[0].value == pytest.approx(-0.1, abs=0.06)
+    (scale,) = (each for each in found.refitted if each.name == "turn_scale")
+    assert scale.interval.low < 0.944 < scale.interval.high
