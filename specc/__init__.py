@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from specc.portraying import sweep as sweep
     from specc.recorded import record as record
     from specc.reported import write_report as write_report
+    from specc.reported import write_reports as write_reports
     from specc.running import simulate as simulate
+    from specc.runs import verify_each as verify_each
     from specc.verifying import Verification as Verification
     from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
@@ -58,6 +60,8 @@ HOMES = {
     "draw": "specc.drawn",
     "record": "specc.recorded",
     "write_report": "specc.reported",
+    "write_reports": "specc.reported",
+    "verify_each": "specc.runs",
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
     "Comparison": "verifier.topology.comparing.comparison",

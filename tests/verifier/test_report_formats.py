@@ -8,6 +8,8 @@ import json
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlparse
 from xml.etree import ElementTree as ET
 
@@ -303,3 +305,56 @@ def test_the_text_tells_every_section_within_its_width() -> None:
     places = [text.index(title) for title in titles]
     assert places == sorted(places)
     assert max(len(line) for line in text.splitlines()) <= 120
+
+
+# --- the JSON Schema
+
+SCHEMA = json.loads((Path(__file__).parents[2] / "docs/schema/report.schema.json").read_text())
+KINDS = {
+    "object": dict,
+    "array": list,
+    "string": str,
+    "integer": int,
+    "number": (int, float),
+    "boolean": bool,
+    "null": type(None),
+}
+
+
+def faults(value: Any, schema: dict[str, Any], at: str = "$") -> list[str]:
+    """What of the schema's own words (those that it uses) a value breaks."""
+    if "$ref" in schema:
+        return faults(value, SCHEMA["$defs"][schema["$ref"].rsplit("/", 1)[1]], at)
+    if "anyOf" in schema:
+        tried = [faults(value, each, at) for each in schema["anyOf"]]
+        return [] if [] in tried else tried[0]
+    if "enum" in schema or "const" in schema:
+        return [] if value in schema.get("enum", [schema.get("const")]) else [f"{at}: {value!r}"]
+    kinds = [schema["type"]] if isinstance(schema["type"], str) else schema["type"]
+    is_fit = any(isinstance(value, KINDS[kind]) for kind in kinds)
+    if not is_fit or (isinstance(value, bool) and "boolean" not in kinds):
+        return [f"{at}: {value!r} is no {kinds}"]
+    found = [f"{at}.{name} is missing" for name in schema.get("required", ()) if name not in value]
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            rule = schema.get("properties", {}).get(name) or schema.get("additionalProperties")
+            found += faults(inner, rule, f"{at}.{name}") if rule else []
+    if isinstance(value, list) and "items" in schema:
+        for k, inner in enumerate(value):
+            found += faults(inner, schema["items"], f"{at}[{k}]")
+    return found
+
+
+@pytest.mark.parametrize("made", [examination(), passed()])
+def test_the_record_is_what_its_schema_says(made: Examination) -> None:
+    record = json.loads(json.dumps(examination_record(made)))
+
+    assert faults(record, SCHEMA) == []
+    assert set(record) <= set(SCHEMA["$defs"]["report"]["properties"])
+
+
+def test_a_record_without_a_reason_or_with_another_verdict_breaks_the_schema() -> None:
+    record = json.loads(json.dumps(examination_record(passed())))
+
+    assert faults({**record, "verdict": "perhaps"}, SCHEMA)
+    assert faults({k: v for k, v in record.items() if k != "reasons"}, SCHEMA)
