@@ -278,7 +278,7 @@ def _zero_note(samples: Samples) -> list[str]:
     columns = [c.numbers for c in samples.columns.values() if np.isfinite(c.numbers).any()]
     if len(columns) < 2:
         return []
-    zero = int(np.all(np.stack(columns) == 0.0, axis=0).sum())
+    zero = int(np.count_nonzero(np.logical_and.reduce([column == 0.0 for column in columns])))
     whole = columns[0].size
     if not zero:
         return []

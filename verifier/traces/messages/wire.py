@@ -30,7 +30,7 @@ def decode(
     encoding: `cdr`, `ros1` or `ulog`.
     """
     sink = _Sink(
-        numbers=np.full((len(asked), len(payloads)), np.nan),
+        numbers=[np.full(len(payloads), np.nan) for _ in asked],
         texts={},
         readable=np.ones(len(payloads), dtype=np.bool_),
         reasons=[],
@@ -66,7 +66,7 @@ def decode(
 class _Sink:
     """Where decoded values go while the groups are worked through."""
 
-    numbers: Array
+    numbers: list[Array]
     texts: dict[int, list[str | None]]
     readable: Booleans
     reasons: list[str]
@@ -132,7 +132,7 @@ def _groups(batch: _Batch, encoding: str) -> Iterator[_Group]:
 def _take(group: _Group, rows: Integers, leaf: int, slot: Slot, sink: _Sink) -> None:
     if slot.code:
         with np.errstate(invalid="ignore"):  # a signalling NaN is a NaN
-            sink.numbers[leaf, rows] = group.gather(rows, slot)
+            sink.numbers[leaf][rows] = group.gather(rows, slot)
         return
     payloads = group.batch.payloads
     texts = sink.texts.setdefault(leaf, [None] * len(payloads))
