@@ -37,6 +37,7 @@ def variable(
             horizon=HORIZON * share,
             windows=windows,
             rmse=1.1 * abs(mean) * share,
+            noise=0.1 * tolerance * share,
             departure=abs(mean) * share,
             interval=Interval(0.8 * abs(mean) * share, 1.2 * abs(mean) * share),
             tolerance=tolerance,

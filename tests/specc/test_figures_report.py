@@ -51,7 +51,7 @@ def test_coverage_is_drawn_for_regions_of_any_dimension(axes: int) -> None:
 def test_an_unbounded_interval_can_be_drawn() -> None:
     made = report(Verdict.INCONCLUSIVE)
     open_ended = HorizonFigure(
-        5.0, 1, 0.02, float("nan"), Interval(0.0, float("inf")), 0.1, Standing.UNDECIDED
+        5.0, 1, 0.02, 0.01, float("nan"), Interval(0.0, float("inf")), 0.1, Standing.UNDECIDED
     )
     variable = replace(made.variables[0], horizons=(open_ended,), standing=Standing.UNDECIDED)
 

@@ -76,6 +76,7 @@ def _horizon(result: VariableResult, figure: HorizonFigure) -> dict[str, object]
         "horizon": figure.horizon,
         "windows": figure.windows,
         "rmse": _number(figure.rmse, unit),
+        "noise": _number(figure.noise, unit),
         "departure": _number(figure.departure, unit),
         "interval": _interval(figure.interval, unit),
         "tolerance": _number(figure.tolerance, unit),

@@ -63,12 +63,14 @@ class HorizonFigure:
 
     rmse: the plain root mean square over all windows. departure: the same with the contribution
     of the sensors' noise removed; `interval` holds the true one at the report's confidence, and
-    `standing` is where that interval stands.
+    `standing` is where that interval stands. noise: what the noise of the sensors contributes, at
+    the horizon and by way of the start, which is not known better than they tell.
     """
 
     horizon: float
     windows: int
     rmse: float
+    noise: float
     departure: float
     interval: Interval
     tolerance: float

@@ -149,6 +149,6 @@ def test_what_comes_back_on_every_lap_is_shown_with_its_size() -> None:
         for _ in range(40)
     ]
 
-    # Its root mean square is 0.71: never more is shown but by chance, and most of it is.
+    # Its root mean square is 0.71, that of the unrest 1: seldom is more shown, and much of it is.
     assert np.mean(np.array(shown) > np.sqrt(0.5)) < 0.1
-    assert np.median(shown) > 0.35
+    assert np.median(shown) > 0.25

@@ -157,6 +157,17 @@ def test_a_wrong_scale_is_named_with_its_size(scenes: ModuleType) -> None:
     assert any(r.startswith("heading moves 0.909 times as far") for r in report.reasons)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_minute_tells_a_gain_three_percent_off(scenes: ModuleType, seed: int) -> None:
+    # Turns of 1 rad within the horizon: 0.03 rad, and 0.02 are allowed.
+    report = verify(scenes.unicycle(1.03), scenes.unicycle_drive(seed, 60.0, 0.01))
+
+    assert of(report, "heading").standing is Standing.EXCEEDED
+    assert (
+        verify(scenes.unicycle(), scenes.unicycle_drive(seed, 60.0, 0.01)).verdict is Verdict.PASS
+    )
+
+
 def test_a_late_input_shows_and_its_declared_delay_heals_it(scenes: ModuleType) -> None:
     late = scenes.unicycle_drive(5, 120.0, 0.01, late=0.3)
 
@@ -424,3 +435,34 @@ def test_noise_that_the_spec_declares_is_not_estimated(scenes: ModuleType) -> No
 
     assert noise.sigma == 0.02
     assert noise.method == "declared at scene.yaml:7:3"
+
+
+def test_noise_that_the_field_makes_grow_is_named_with_what_would_help(scenes: ModuleType) -> None:
+    # x'' = 9 x: what is not known of the start grows by e^3 a second.
+    spec = scenes.program(
+        (scenes.state("x", -50.0, 50.0), scenes.state("v", -150.0, 150.0)),
+        (scenes.control("u", -20.0, 20.0, 0.0),),
+        {"x": "v", "v": "9 x mul u add"},
+        scenes.fidelity({"x": 0.1}, 2.0),
+    )
+    rng = np.random.default_rng(9)
+    times = np.arange(0.0, 60.0, 0.05)
+    x, v, inputs = np.zeros(1200), np.zeros(1200), np.zeros(1200)
+    grown, swept = np.cosh(0.15), np.sinh(0.15) / 3.0
+    for k in range(1199):
+        inputs[k] = np.clip(-18.0 * x[k] - 6.0 * v[k] + rng.normal(), -20.0, 20.0)
+        rest = -inputs[k] / 9.0
+        x[k + 1] = rest + (x[k] - rest) * grown + v[k] * swept
+        v[k + 1] = 9.0 * (x[k] - rest) * swept + v[k] * grown
+    noisy = [values + 0.01 * rng.standard_normal(1200) for values in (x, v)]
+    drive = scenes.trace(
+        scenes.series("x", times, noisy[0]),
+        scenes.series("v", times, noisy[1]),
+        scenes.series("u", times, inputs),
+    )
+
+    report = verify(spec, drive)
+
+    assert report.verdict is Verdict.INCONCLUSIVE
+    assert "the field carries apart what starts together" in report.advice[0]
+    assert "a horizon of at most" in report.advice[0]

@@ -81,12 +81,15 @@ def _conditions(program: Program, study: Study, places: dict[str, Array]) -> tup
     read = names_read(program)
     discrete = {state.name for state in program.states if state.kind is Kind.DISCRETE}
     turns = {each.state.name: each.turn for each in study.plan.samples}
+    samples = zip(study.plan.samples, study.noise, strict=True)
+    sigmas = {each.state.name: noise.sigma for each, noise in samples}
     return tuple(
         Condition(
             name,
             _settled(study, name) if name in discrete else values,
             is_discrete=name in discrete,
             turn=turns.get(name, 0.0),
+            noise=sigmas.get(name, 0.0),
         )
         for name, values in places.items()
         if name in read
@@ -110,7 +113,7 @@ def _result(
     tolerance, scatter = fidelity.tolerance[name], fidelity.scatter.get(name, 0.0)
     every = [errors[j] for errors in study.shots.errors]
     figures = tuple(
-        _figure(horizon, _departure(study, errors, noise), tolerance)
+        _figure(horizon, _departure(study, errors, noise), _carried(study, errors), tolerance)
         for horizon, errors in zip(study.plan.horizons, every, strict=True)
     )
     kept = _kept(study, every[-1])
@@ -151,11 +154,18 @@ def _departure(study: Study, errors: Errors, noise: Noise) -> Departure:
     return departure_of(errors.plain[kept], errors.mean[kept], errors.variance[kept], doubt)
 
 
-def _figure(horizon: float, found: Departure, tolerance: float) -> HorizonFigure:
+def _carried(study: Study, errors: Errors) -> float:
+    """The root mean square of what the noise of the sensors makes of an error."""
+    variance = errors.variance[_kept(study, errors)]
+    return float(np.sqrt(np.mean(variance))) if len(variance) else 0.0
+
+
+def _figure(horizon: float, found: Departure, noise: float, tolerance: float) -> HorizonFigure:
     return HorizonFigure(
         horizon=horizon,
         windows=found.windows,
         rmse=found.rmse,
+        noise=noise,
         departure=found.departure,
         interval=found.interval,
         tolerance=tolerance,

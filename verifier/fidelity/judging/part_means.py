@@ -1,10 +1,11 @@
 """The mean error in each part of phase space and control domain in which the robot was.
 
 A mean, because noise of the sensors and unrest of the robot average out and say nothing about the
-spec; of parts, because errors of opposite signs would otherwise hide one another. Within a part
-the mean may depend, on a straight line, on how far the variable was predicted to move, and on how
-much faster at the end than at the start: it is told for short and for long moves, slowing down
-and speeding up, so that a wrong gain and a late input show however few parts there are.
+spec; of parts, because errors of opposite signs would otherwise hide one another. Beside the parts,
+all windows together: there the mean may depend, on a straight line, on how far the variable was
+predicted to move, and on how much faster at the end than at the start. It is told for short and
+for long moves, slowing down and speeding up, so that a wrong gain and a late input show in short
+recordings, too.
 
 Errors of neighbouring windows depend on one another (they overlap, and unrest may last), so
 windows are gathered in *clusters* of at least 1.5 horizons, longer where what the parts leave
@@ -28,14 +29,16 @@ WINDOWS_PER_HORIZON: Final = 2
 ALIKE: Final = 0.25
 """Moves that differ by less than this share of the tolerance are of one length: even a variable
 that does not move at all would depart by no more."""
-CLUSTERS_PER_COLUMN: Final = 4
+CLUSTERS_PER_COLUMN: Final = 3
 """So many clusters for each number that is estimated in a part."""
-LEANING: Final = 0.5
+MOSTLY: Final = 0.5
+"""A quantity whose noise is this share of its spread tells no manners or situations apart."""
+LEANING: Final = 0.8
 """A slope is told from no single cluster: none has more than this share of what moves differ by."""
 SHARP: Final = 0.2
 """Parts are so large that their means are known to this share of the tolerance,"""
 STUDENT: Final = 3.0
-"""at the ends of a slope: Student's t times the square root of two."""
+"""with so many standard errors."""
 
 Manner: TypeAlias = tuple[float | None, float | None]
 """How far a window moved, and how much it hurried; None where that is not told apart."""
@@ -44,7 +47,7 @@ Manner: TypeAlias = tuple[float | None, float | None]
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class PartMean:
-    """The mean error in one part, for windows of one manner.
+    """The mean error in one part, or everywhere for windows of one manner.
 
     moved, hurried: of windows that were predicted to move about so far, and so much farther in
     the last tenth of the horizon than in the first; None where that makes no difference.
@@ -75,6 +78,16 @@ class PartMeans:
     clusters: Integers
 
 
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Group:
+    """The means of one part, and of which manner of moving each is."""
+
+    part: Part
+    means: Means
+    manners: list[Manner]
+
+
 def part_means(
     errors: Errors, conditions: tuple[Condition, ...], tolerance: float, chance: float
 ) -> PartMeans:
@@ -85,19 +98,24 @@ def part_means(
     it decides as Holm's correction does whether there is any. That all means are within it needs
     no correction (Berger 1982).
     """
-    clusters, parts = _parted(errors, conditions, tolerance)
-    found = [_means(errors, part, clusters, tolerance) for part in parts]
-    shared = chance / max(1, sum(len(means.value) for means, _ in found))
-    lowest = [np.maximum(low, -high) for low, high in (m.bounds(shared) for m, _ in found)]
+    clusters, parts, residual = _parted(errors, conditions, tolerance)
+    found = [_manners(errors, clusters, tolerance)]
+    if len(parts) > 1:
+        found += [_plain(errors, part, clusters) for part in parts]
+    shared = chance / sum(len(group.means.value) for group in found)
+    lowest = [np.maximum(low, -high) for low, high in (g.means.bounds(shared) for g in found)]
+    judged = np.any([part.members for part in parts], axis=0)
+    free = max(int(np.sum(judged)) - len(parts) - len(found[0].manners) // 2, 1)
+    own = float(np.sum(residual[judged] ** 2)) / free - float(np.mean(errors.variance[judged]))
     return PartMeans(
         means=tuple(
             mean
-            for part, (means, manners), beyond in zip(parts, found, lowest, strict=True)
-            for mean in _told(part, means, manners, beyond, tolerance)
+            for group, beyond in zip(found, lowest, strict=True)
+            for mean in _told(group, beyond, tolerance)
         ),
-        shown=max((float(ends.max()) for ends in lowest), default=0.0),
-        scatter=_scatter(errors, parts, found),
-        unjudged=len(errors.mean) - int(np.sum([np.sum(part.members) for part in parts])),
+        shown=max(float(ends.max()) for ends in lowest),
+        scatter=float(np.sqrt(max(own, 0.0))),
+        unjudged=int(np.sum(~judged)),
         clusters=clusters,
     )
 
@@ -112,22 +130,29 @@ def clusters_of(residual: Array) -> Integers:
 
 def _parted(
     errors: Errors, conditions: tuple[Condition, ...], tolerance: float
-) -> tuple[Integers, tuple[Part, ...]]:
-    """The clusters (W,), and the parts: as fine as the data can tell within the tolerance.
+) -> tuple[Integers, tuple[Part, ...], Array]:
+    """The clusters (W,), the parts, and what they leave unexplained of the errors (W,).
 
-    What single windows scatter by is seen in the finest parts that there are, where the least of
-    it is due to differences between places.
+    The parts are as fine as the data can tell within the tolerance. What windows scatter by is
+    seen in the finest parts that there are, where the least of it is due to different places.
     """
     clusters = clusters_of(np.zeros(len(errors.mean)))
+    slopes = _manners(errors, clusters, tolerance).means.residual
+    clusters = clusters_of(_within(slopes, parts_of(conditions, clusters)))
     fine = parts_of(conditions, clusters)
-    residual = errors.mean - np.mean(errors.mean)
-    for part in fine:
-        residual[part.members] = _means(errors, part, clusters, tolerance)[0].residual
-    clusters = clusters_of(residual)
-    unrest = _unrest(residual, clusters, parts_of(conditions, clusters))
+    unrest = _unrest(_within(slopes, fine), clusters, fine)
     wanted = (STUDENT * unrest / (SHARP * tolerance)) ** 2 if tolerance > 0.0 else np.inf
     least = int(np.clip(np.ceil(wanted), LEAST, len(errors.mean)))
-    return clusters, parts_of(conditions, clusters, least)
+    parts = parts_of(conditions, clusters, least)
+    return clusters, parts, _within(slopes, parts)
+
+
+def _within(values: Array, parts: tuple[Part, ...]) -> Array:
+    """Values (W,) less the mean of their part."""
+    rest = values - np.mean(values)
+    for part in parts:
+        rest[part.members] -= np.mean(rest[part.members])
+    return rest
 
 
 def _unrest(residual: Array, clusters: Integers, parts: tuple[Part, ...]) -> float:
@@ -141,29 +166,37 @@ def _unrest(residual: Array, clusters: Integers, parts: tuple[Part, ...]) -> flo
     return float(np.sqrt(squares / max(count, 1)))
 
 
-def _means(
-    errors: Errors, part: Part, clusters: Integers, tolerance: float
-) -> tuple[Means, list[Manner]]:
-    """The means in one part, and of which manners of moving they are."""
-    own, here = errors.mean[part.members], clusters[part.members]
-    columns, manners = [np.ones(len(own))], []
-    room = len(np.unique(here)) // CLUSTERS_PER_COLUMN - 1
-    for which, values in enumerate((errors.moved[part.members], errors.hurried[part.members])):
+def _plain(errors: Errors, part: Part, clusters: Integers) -> _Group:
+    """The mean of one part."""
+    own = errors.mean[part.members]
+    one = np.ones((1, 1))
+    means = conditional_means(own, np.ones((len(own), 1)), clusters[part.members], one)
+    return _Group(part, means, [(None, None)])
+
+
+def _manners(errors: Errors, clusters: Integers, tolerance: float) -> _Group:
+    """The means of short and of long moves, speeding up and slowing down, wherever they were."""
+    columns, manners = [np.ones(len(errors.mean))], []
+    carried = float(np.sqrt(np.mean(errors.variance)))
+    room = len(np.unique(clusters)) // CLUSTERS_PER_COLUMN - 1
+    for which, values in enumerate((errors.moved, errors.hurried)):
         design = np.column_stack(columns)
         rest = values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
         spread = float(np.std(rest))
-        if len(columns) > room or spread <= ALIKE * tolerance or _leans(rest, here):
+        if spread <= max(ALIKE * tolerance, carried / MOSTLY) or _leans(rest, clusters):
             continue
+        if len(columns) > room:
+            break
         columns.append(rest / spread)
         for side in (-1.0, 1.0):
             manner: list[float | None] = [None, None]
             manner[which] = float(np.mean(values)) + side * spread
             manners.append((side * np.eye(3)[len(columns) - 1], manner))
-    design = np.column_stack(columns)
-    if not manners:
-        return conditional_means(own, design, here, np.ones((1, 1))), [(None, None)]
-    at = np.array([np.eye(3)[0] + turned for turned, _ in manners])[:, : len(columns)]
-    return conditional_means(own, design, here, at), [(m[0], m[1]) for _, m in manners]
+    design, everywhere = np.column_stack(columns), Part(np.ones(len(errors.mean), dtype=bool))
+    turns = [turned for turned, _ in manners] or [np.zeros(3)]
+    at = np.array([np.eye(3)[0] + turned for turned in turns])[:, : len(columns)]
+    means = conditional_means(errors.mean, design, clusters, at)
+    return _Group(everywhere, means, [(m[0], m[1]) for _, m in manners] or [(None, None)])
 
 
 def _leans(deviation: Array, clusters: Integers) -> bool:
@@ -172,30 +205,13 @@ def _leans(deviation: Array, clusters: Integers) -> bool:
     return bool(shares.max() > LEANING * shares.sum())
 
 
-def _told(
-    part: Part, means: Means, manners: list[Manner], beyond: Array, tolerance: float
-) -> list[PartMean]:
-    low, high = means.bounds((1.0 - CONFIDENCE) / 2.0)
+def _told(group: _Group, beyond: Array, tolerance: float) -> list[PartMean]:
+    low, high = group.means.bounds((1.0 - CONFIDENCE) / 2.0)
     found = []
-    for k, value in enumerate(means.value):
+    for k, value in enumerate(group.means.value):
         interval = Interval(float(low[k]), float(high[k]))
         is_inside = max(abs(interval.low), abs(interval.high)) <= tolerance
         standing = Standing.WITHIN if is_inside else Standing.UNDECIDED
         standing = Standing.EXCEEDED if beyond[k] > tolerance else standing
-        found.append(PartMean(part, *manners[k], float(value), interval, standing))
+        found.append(PartMean(group.part, *group.manners[k], float(value), interval, standing))
     return found
-
-
-def _scatter(
-    errors: Errors, parts: tuple[Part, ...], found: list[tuple[Means, list[Manner]]]
-) -> float:
-    """Of all windows in parts, as a standard deviation."""
-    squares, noise, free = 0.0, 0.0, 0
-    for part, (means, manners) in zip(parts, found, strict=True):
-        squares += float(np.sum(means.residual**2))
-        noise += float(np.sum(errors.variance[part.members]))
-        free += len(means.residual) - max(1, 1 + len(manners) // 2)
-    if free <= 0:
-        return 0.0
-    judged = sum(len(means.residual) for means, _ in found)
-    return float(np.sqrt(max(squares / free - noise / judged, 0.0)))

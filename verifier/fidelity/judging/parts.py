@@ -24,12 +24,16 @@ STILL: Final = 1e-6
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Condition:
-    """One quantity (W,) by which windows are told apart; `turn` is the period of a periodic one."""
+    """One quantity (W,) by which windows are told apart.
+
+    turn: the period of a periodic one, else 0. noise: the standard deviation of its sensor's.
+    """
 
     name: str
     values: Array
     is_discrete: bool
     turn: float = 0.0
+    noise: float = 0.0
 
 
 @final

@@ -10,6 +10,10 @@ from verifier.report.wording import listed, number, percent, quantity, seconds, 
 
 EXPLAINS = 0.5
 """A proportional error is worth a sentence where it explains this share of the squared error."""
+LOUD = 0.5
+"""Noise below this share of the tolerance leaves room for a verdict."""
+GROWN = 3.0
+"""Noise that grows so many times over the horizon is worth a word about the field."""
 HOPELESS = 100.0
 """Where so many times the data were needed, more data is no advice."""
 
@@ -20,9 +24,9 @@ def exceeded(result: VariableResult) -> str:
     return (
         f"{result.name} departs by {quantity(figure.departure, unit)} after"
         f" {number(figure.horizon)} s (95 % interval {_interval(figure.interval, unit)});"
-        f" {quantity(result.tolerance, unit)} is allowed, and at least"
-        f" {quantity(result.systematic, unit)} of it is no chance: it comes back wherever the robot"
-        " is in the same situation"
+        f" {quantity(result.tolerance, unit)} is allowed; at its worst, at least"
+        f" {quantity(result.systematic, unit)} is no chance: it comes back wherever the robot is in"
+        " the same situation"
     )
 
 
@@ -119,6 +123,30 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
         f" {quantity(region.mean, unit)} (95 % interval {_interval(region.interval, unit)},"
         f" {region.windows} windows)"
     )
+
+
+def too_noisy(result: VariableResult) -> list[str]:
+    """That the noise of the sensors alone fills the tolerance, and what would help."""
+    figure, unit = result.declared, result.unit
+    if figure.noise <= result.tolerance:
+        return []
+    quiet = [f.horizon for f in result.horizons if f.noise <= LOUD * result.tolerance]
+    early = result.horizons[0]
+    grown = figure.noise / max(early.noise, 1e-300)
+    growth = (
+        f", and the field carries apart what starts together: {number(grown)} times as much as"
+        f" after {number(early.horizon)} s"
+        if grown > GROWN
+        else ""
+    )
+    remedy = f"a horizon of at most {number(quiet[-1])} s, or a " if quiet else "a "
+    return [
+        (
+            f"the noise of the sensors makes {quantity(figure.noise, unit)} of {result.name} at the"
+            f" horizon, more than the {quantity(result.tolerance, unit)} allowed{growth}; {remedy}"
+            f"sensor {number(figure.noise / (LOUD * result.tolerance))} times as quiet, would tell"
+        )
+    ]
 
 
 def allow_scatter(result: VariableResult) -> list[str]:

@@ -9,7 +9,8 @@ For a forecast f of errors e with mean m(situation):
     E[e f] / rms(f) = E[m f] / rms(f) <= rms(m)          (Cauchy and Schwarz)
 
 whatever f is: a poor forecast shows too little, never too much. The left side is a mean, and gets
-Student's t over clusters. Letters: W windows, d quantities that make up the situation.
+Student's t over clusters, from what the forecast missed: the situations are given, only the errors
+in them are chance. Letters: W windows, d quantities that make up the situation.
 """
 
 from typing import Final
@@ -21,10 +22,11 @@ from runtime.arrays import Array, Integers
 
 MOST: Final = 600
 """So many windows are enough; of more, every second, third ... one is taken."""
-REACHES: Final = (1.0, 3.0)
+REACH: Final = 2.0
 """How far neighbours reach, in standard deviations of the situation times its dimension's root."""
-RIDGES: Final = (0.1, 1.0, 10.0)
-"""The variance of the noise as a share of that of the errors."""
+RIDGE: Final = 1.0
+"""The variance of the noise, as a share of what a constant, a slope or a bump has. Fixed, as the
+reach is: what is chosen to foretell best foretells chance, too."""
 FEWEST: Final = 4
 """With fewer clusters nothing is foretold."""
 
@@ -45,10 +47,9 @@ def shown_structure(errors: Array, situation: Array, clusters: Integers, chance:
     size = float(np.sqrt(np.mean(forecast**2)))
     if size == 0.0:
         return 0.0
-    products = errors * forecast / size
-    mean = float(np.mean(products))
-    sums = np.bincount(place, weights=products - mean)
-    error = float(np.sqrt(np.sum(sums**2) * count / (count - 1.0)) / len(products))
+    mean = float(np.mean(errors * forecast)) / size
+    sums = np.bincount(place, weights=(errors - forecast) * forecast / size)
+    error = float(np.sqrt(np.sum(sums**2) * count / (count - 1.0)) / len(errors))
     return max(0.0, mean - float(special.stdtrit(count - 1, 1.0 - chance)) * error)
 
 
@@ -60,29 +61,16 @@ def _scaled(situation: Array) -> Array:
 
 
 def _foretold(errors: Array, situation: Array, place: Integers) -> Array:
-    """The forecast (W,) of each cluster from the others, by the kernel that foretells best."""
-    power = float(np.mean(errors**2))
-    best, least = np.zeros(len(errors)), power
-    distance = np.sum((situation[:, None, :] - situation[None, :, :]) ** 2, axis=-1)
-    for reach in REACHES:
-        width = reach**2 * max(situation.shape[1], 1)
-        # A constant, a slope and a bump: constants and gains are foretold from anywhere.
-        kernel = 1.0 + situation @ situation.T + np.exp(-0.5 * distance / width)
-        for ridge in RIDGES:
-            precision = np.linalg.inv(kernel + ridge * np.eye(len(errors)))
-            forecast = _without_own(errors, precision, place)
-            missed = float(np.mean((errors - forecast) ** 2))
-            if missed < least:
-                best, least = forecast, missed
-    return best
+    """The forecast (W,) of each cluster from the others; its neighbours in time are left out, too.
 
-
-def _without_own(errors: Array, precision: Array, place: Integers) -> Array:
-    """What the others foretell of each cluster, its neighbours in time left out, too.
-
-    precision (W, W): the inverse of the errors' covariance. A Gaussian's mean given all others is
-    e_A - P_AA^-1 (P e)_A for the left-out A (Rasmussen and Williams 2006, section 5.4.2).
+    A constant, slopes and bumps: constants and gains are foretold from anywhere, the rest from
+    near by. A Gaussian's mean given all but A is e_A - P_AA^-1 (P e)_A, P the inverse of the
+    covariance (Rasmussen and Williams 2006, section 5.4.2).
     """
+    distance = np.sum((situation[:, None, :] - situation[None, :, :]) ** 2, axis=-1)
+    width = REACH**2 * max(situation.shape[1], 1)
+    kernel = 1.0 + situation @ situation.T + np.exp(-0.5 * distance / width)
+    precision = np.linalg.inv(kernel + RIDGE * np.eye(len(errors)))
     pulled = precision @ errors
     forecast = np.empty(len(errors))
     for cluster in range(int(place.max()) + 1):

@@ -49,7 +49,9 @@ def decide(
     advice = []
     for result in results:
         if result.standing is Standing.UNDECIDED:
-            advice += sentences.allow_scatter(result) or [sentences.more_data(result, judged)]
+            noisy = sentences.too_noisy(result)
+            restless = [] if noisy else sentences.allow_scatter(result)
+            advice += noisy or restless or [sentences.more_data(result, judged)]
     if not coverage.is_reached:
         doubts.append(sentences.uncovered(coverage))
         advice += sentences.unseen(coverage)
