@@ -6,7 +6,7 @@ from runtime.program import Unit
 from specc.figures.candidates import draw_candidates
 from specc.figures.caught import draw_caught
 from specc.figures.features import draw_features
-from specc.figures.quantities import number, percent, quantity, seconds
+from specc.figures.quantities import number, quantity, seconds
 from specc.figures.style import Picture
 from specc.figures.switches import draw_switches
 from specc.pages.inline_svg import inline_svg
@@ -18,6 +18,7 @@ from verifier.report.features import Estimate, FeatureNumber, Features
 from verifier.report.limits import Limits
 from verifier.report.scores import Scores, VariableScores
 from verifier.report.switching import Switching, SwitchSort, Way
+from verifier.report.wording import percent
 
 
 def explanations(examination: Examination, prefix: str) -> tuple[Part, ...]:

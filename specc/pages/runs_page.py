@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from typing import Final
 
-from specc.figures.quantities import number, percent, seconds
+from specc.figures.quantities import number, seconds
 from specc.pages.page import Page, RunRow, RunsPage
 from specc.pages.report_page import SIGNS, gathered, rendered
 from specc.runs import Outcome, Unusable, counted, together, verifications
 from specc.runs_text import column_of, columns_of, reasons_of
 from specc.verifying import Verification
 from verifier.report.report import Coverage, Verdict
+from verifier.report.wording import percent
 
 DRAWN: Final = 6
 """With more recordings than these, the variables of those that passed get no figures."""

@@ -1,8 +1,9 @@
 """The sentences of a report's page: what numbers mean and how to read its figures."""
 
 from runtime.program import Unit
-from specc.figures.quantities import number, percent, quantity, seconds
+from specc.figures.quantities import number, quantity, seconds
 from verifier.report.report import Coverage, Interval, RegionMean, Report, VariableResult
+from verifier.report.wording import percent
 
 
 def ranged(interval: Interval, unit: Unit) -> str:
@@ -87,6 +88,9 @@ def about_coverage(coverage: Coverage | None) -> tuple[str, ...]:
         return ("The spec declares no region that the trace must cover.",)
     enough = "enough" if coverage.is_reached else "too little"
     names = ", ".join(axis.name for axis in coverage.axes)
+    if coverage.required == 0.0:
+        share = percent(coverage.share)
+        return (f"The judged windows went through {share} of {names}; the spec requires none.",)
     sentence = (
         f"The judged windows went through {percent(coverage.share)} of the declared region"
         f" ({names}); the spec asks for {percent(coverage.required)}: {enough} for a pass."
@@ -105,6 +109,14 @@ def about_variable(report: Report, variable: VariableResult) -> tuple[str, ...]:
     if noise.quantum > 0.0:
         sentences.append(
             f"The sensor's values come in steps of {quantity(noise.quantum, variable.unit)}."
+        )
+    scatter = quantity(variable.scatter, variable.unit)
+    sentences.append(f"Single windows scatter by {scatter} around the mean of their part.")
+    if variable.systematic > 0.0:
+        size = quantity(variable.systematic, variable.unit)
+        sentences.append(
+            f"At least {size} of the error is no chance: it comes back wherever the robot is in"
+            " the same situation."
         )
     if variable.worst is not None:
         sentences.append(about_region(report, variable, variable.worst))
