@@ -24,17 +24,10 @@ def arrows_sampler(
     go = frozen([arrow.go for arrow in form.sketch]) * scales(drives, declared)
     ranges = [range_of(name, declared) for name in form.over]
     low, high = frozen([r.low for r in ranges]), frozen([r.high for r in ranges])
-    periodic = tuple(span.periodic for span in ranges)
     try:
-        sample: Sampler
-        if form.fill == "least_squares":
-            weights = np.array([arrow.weight or 1.0 for arrow in form.sketch])
-            sample = least_squares(at, go, weights, low, high, periodic, form.degree)
+        sample = _filled(form, at, go, ranges)
+        if isinstance(sample, Surface):
             _note_misfits(sample, at, go, drives, declared, findings)
-        elif form.fill == "thin_plate":
-            sample = thin_plate(at, go, low, high, periodic)
-        else:
-            sample = piecewise_linear(*_wrapped(at, go, ranges))
         beyond = reaches_beyond(*_wrapped(at, go, ranges)[:1], low, high)
     except SketchError as error:
         findings.error("S234", ("field", "arrows", "sketch"), error.message, error.remedy)
@@ -48,6 +41,27 @@ def arrows_sampler(
             "sketch arrows at the corners of the domain, or shrink the domain",
         )
     return sample
+
+
+def arrow_shares(form: Arrows, declared: Declarations) -> Sampler:
+    """How much each arrow (N) counts at places (P, d): the field is the sum of share times arrow.
+
+    The arrows must fill, as `arrows_sampler` tests.
+    """
+    at = frozen([arrow.at for arrow in form.sketch]) * scales(form.over, declared)
+    return _filled(form, at, np.eye(len(at)), [range_of(name, declared) for name in form.over])
+
+
+def _filled(form: Arrows, at: Array, go: Array, ranges: list[Range]) -> Sampler:
+    """What is between the arrows `go` (k, m) at `at` (k, d), both in SI; linear in `go`."""
+    low, high = frozen([r.low for r in ranges]), frozen([r.high for r in ranges])
+    periodic = tuple(span.periodic for span in ranges)
+    if form.fill == "least_squares":
+        weights = np.array([arrow.weight or 1.0 for arrow in form.sketch])
+        return least_squares(at, go, weights, low, high, periodic, form.degree)
+    if form.fill == "thin_plate":
+        return thin_plate(at, go, low, high, periodic)
+    return piecewise_linear(*_wrapped(at, go, ranges))
 
 
 def _note_misfits(

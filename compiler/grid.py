@@ -1,5 +1,6 @@
 """A field given as a lookup array: its sampler, and its own table where the nodes allow it."""
 
+import math
 from pathlib import Path as FilePath
 
 import numpy as np
@@ -34,6 +35,33 @@ def grid_sampler(
     nodes = _grid_nodes(form, values.shape, ranges, declared, findings)
     if nodes is None:
         return None, None
+    return _between(form, spec, values, nodes, ranges)
+
+
+def grid_shares(
+    form: Grid, spec: BehaviorSpec, declared: Declarations, findings: Findings
+) -> Sampler:
+    """How much each of N nodes counts at places (P, d), the last axis fastest.
+
+    The values must be inline and fit, as `grid_sampler` tests.
+    """
+    assert form.values, "the values are inline"
+    shape = next(iter(form.values.values())).shape
+    ranges = [range_of(name, declared) for name in form.over]
+    nodes = _grid_nodes(form, (*shape, 1), ranges, declared, findings)
+    assert nodes is not None, "the nodes were tested before"
+    count = math.prod(shape)
+    return _between(form, spec, np.eye(count).reshape(*shape, count), nodes, ranges)[0]
+
+
+def _between(
+    form: Grid,
+    spec: BehaviorSpec,
+    values: Array,
+    nodes: tuple[Array, ...],
+    ranges: list[Range],
+) -> tuple[Sampler, Table | None]:
+    """What is between the nodes; its own table, too, where they are those of a table."""
     method = Method(form.between)
     even = all(
         is_even(at, r.low, r.high, periodic=r.periodic) for at, r in zip(nodes, ranges, strict=True)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from specc.claiming import check_claims as check_claims
     from specc.comparing import compare_behaviors as compare_behaviors
     from specc.drawn import draw as draw
+    from specc.fitting.fit import fit as fit
+    from specc.fitting.fitted import Fitted as Fitted
     from specc.loading import compile_spec as compile_spec
     from specc.loading import load_program as load_program
     from specc.loading import write_artifact as write_artifact
@@ -56,6 +58,8 @@ HOMES = {
     "sweep": "specc.portraying",
     "simulate": "specc.running",
     "verify": "specc.verifying",
+    "fit": "specc.fitting.fit",
+    "Fitted": "specc.fitting.fitted",
     "write_artifact": "specc.loading",
     "draw": "specc.drawn",
     "record": "specc.recorded",

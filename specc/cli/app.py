@@ -15,6 +15,7 @@ from specc.cli.check import check
 from specc.cli.compare import compare
 from specc.cli.compile import compile_
 from specc.cli.console import print_annotations, print_json, say, show_diagnostics
+from specc.cli.fit import fit
 from specc.cli.init import init
 from specc.cli.portrait import portrait
 from specc.cli.schema import schema
@@ -62,6 +63,7 @@ app.command("simulate")(simulate)
 app.command("portrait")(portrait)
 app.command("compare")(compare)
 app.command("verify")(verify)
+app.command("fit")(fit)
 app.command("schema")(schema)
 
 

@@ -13,7 +13,7 @@ from typing import Final, TypeAlias, final
 import numpy as np
 
 from runtime.arrays import Array, Booleans
-from runtime.program import Unit
+from runtime.program import Program, Unit
 from verifier.diagnosis.altered import Altered, Effect, Number, Values
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.fitting import Fit, fit, intervals_of, plain_fit
@@ -63,9 +63,11 @@ class FittedVectors:
     is_told: Booleans
 
 
-def fitted_vectors(study: Study, drawn: DrawnField, confidence: float) -> FittedVectors:
+def fitted_vectors(
+    program: Program, study: Study, drawn: DrawnField, confidence: float
+) -> FittedVectors:
     """The vectors that explain the windows best; those that need not move stay as drawn."""
-    scene = scene_of(study.plan.model.flow.program, study)
+    scene = scene_of(program, study)
     still = np.full(drawn.values.shape, np.inf)
     untold = FittedVectors(drawn.values, still, np.zeros(drawn.values.shape, dtype=bool))
     if scene.windows < FEWEST:

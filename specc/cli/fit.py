@@ -1,0 +1,84 @@
+"""`specc fit`: the spec moved to what the robot does."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from specc.cli.console import print_json, print_text, say, shown_bar
+from specc.cli.options import Format, FormatOption
+from specc.cli.status import Status
+from specc.cli.verify import Clock
+from specc.cli.warming import warmed
+
+
+def fit(
+    traces: Annotated[
+        list[Path],
+        typer.Argument(help="Logs: .mcap, ROS 1 .bag, ROS 2 bag, .csv.", metavar="TRACE..."),
+    ],
+    spec: Annotated[
+        Path | None,
+        typer.Option(
+            "--spec", help="The spec (.yaml) to fit; default: as `specc verify` finds it."
+        ),
+    ] = None,
+    write: Annotated[
+        bool, typer.Option("--write", help="Edit the spec's file; without it, only show the edit.")
+    ] = False,
+    anyway: Annotated[
+        bool,
+        typer.Option(
+            "--anyway", help="Move numbers even where the structure differs, or nothing decides."
+        ),
+    ] = False,
+    clock: Annotated[
+        Clock, typer.Option("--clock", help="Sensor stamps, log times, or the better of both.")
+    ] = Clock.AUTO,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Any loss in a log (torn, corrupt) is an error.")
+    ] = False,
+    form: FormatOption = Format.TEXT,
+) -> int:
+    """Move the spec's numbers to what the robot does, and show the edit and the new verdict.
+
+    Controls held constant, constants, delays, scales and offsets of `trace:`, and the vectors of
+    `arrows` and `grid`. Nothing else in the file changes, and nothing without --write. Exit status
+    1: the structure differs, so that no numbers mend it; 4: the recordings can't tell.
+
+    **Examples**
+
+    `specc fit run.mcap`
+
+    `specc fit runs/*.mcap --spec specs/patrol.yaml --write`
+
+    `specc fit run.mcap --format json`
+    """
+    from specc.fitting import fit_text
+    from specc.fitting.fit import fit as fitted_to
+    from specc.fitting.fitted import Outcome
+
+    warmed(spec)
+    with shown_bar("fit") as bar:
+        found = fitted_to(
+            traces,
+            spec,
+            clock.value,
+            strict=strict,
+            anyway=anyway,
+            progress=lambda phase: bar.advance(phase, 0, 1),
+        )
+    is_written = write and found.outcome is Outcome.MOVED
+    if is_written:
+        found.write()
+    if form is Format.JSON:
+        print_json(fit_text.fit_record(found, is_written=is_written))
+    else:
+        say(f"spec: {found.how}")
+        print_text(fit_text.fit_text(found))
+    if is_written:
+        say(f"wrote {found.path}", "bold")
+    elif found.outcome is Outcome.MOVED:
+        say(f"{found.path} is as it was; --write edits it", "bold")
+    statuses = {Outcome.STRUCTURE_DIFFERS: Status.NO, Outcome.CANNOT_TELL: Status.INCONCLUSIVE}
+    return statuses.get(found.outcome, Status.YES)

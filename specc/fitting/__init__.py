@@ -1,0 +1,1 @@
+"""`specc fit`: the spec's own numbers moved to what the robot does, in the user's text."""

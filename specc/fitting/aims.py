@@ -1,0 +1,53 @@
+"""What shall be moved: places in the spec with the values that the robot has there, in SI."""
+
+from dataclasses import dataclass
+from typing import TypeAlias, final
+
+from spec_schema.places import Path
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """A number at `path` that shall be `value`, known to within `half`, both in SI.
+
+    name: for people. unit: of a plain number there; scale: the SI value of one of it.
+    sentence: what was found of the robot.
+    """
+
+    path: Path
+    name: str
+    value: float
+    half: float
+    unit: str
+    scale: float
+    sentence: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class UnitAim:
+    """A logged unit that shall be another one."""
+
+    path: Path
+    name: str
+    text: str
+    sentence: str
+
+
+AnyAim: TypeAlias = Aim | UnitAim
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Aims:
+    """What recordings say; all but the aims are sentences.
+
+    beyond: what departs and no number of the spec stands for. left: what the aims would leave
+    open. With either, the structure differs. choices: what the recordings can't tell.
+    """
+
+    aims: tuple[AnyAim, ...]
+    beyond: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
+    choices: tuple[str, ...] = ()

@@ -1,0 +1,88 @@
+"""What a fit comes to: the moves, the text before and after, and the verdicts on both."""
+
+import difflib
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import final
+
+from spec_schema.source import Source
+from specc.faults import fault
+from specc.files import write_atomically
+from specc.fitting.moves import Move
+from verifier.report.report import Report
+
+BOM = b"\xef\xbb\xbf"
+
+
+@final
+class Outcome(StrEnum):
+    """How a fit ended. Only MOVED has another text than before."""
+
+    MOVED = "moved"
+    NOTHING_TO_MOVE = "nothing to move"
+    STRUCTURE_DIFFERS = "the structure differs"
+    CANNOT_TELL = "cannot tell"
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Fitted:
+    """A spec, fitted to recordings; nothing is written but by `write`.
+
+    how: which spec it is, and why. moves: what was moved, or would be. beyond: what departs and is
+    no number of the spec. left: what the moves would leave open. choices: what the recordings
+    can't tell. stays: what stays as it is since nothing tells it. before, after: the reports on
+    each recording; none after where no edit was tried.
+    """
+
+    outcome: Outcome
+    how: str
+    source: Source
+    edited: Source
+    moves: tuple[Move, ...]
+    beyond: tuple[str, ...]
+    left: tuple[str, ...]
+    choices: tuple[str, ...]
+    stays: tuple[str, ...]
+    before: tuple[Report, ...]
+    after: tuple[Report, ...]
+
+    @property
+    def path(self) -> Path:
+        """The spec's file."""
+        return Path(self.source.name)
+
+    @property
+    def diff(self) -> str:
+        """The change as a unified diff with one line of context; empty where there is none."""
+        old, new = (text.splitlines(keepends=True) for text in (self.source.text, self.edited.text))
+        name = self.source.name
+        lines = difflib.unified_diff(old, new, name, name, n=1)
+        return "".join(
+            line if line.endswith(("\n", "\r")) else f"{line}\n\\ No newline at end of file\n"
+            for line in lines
+        )
+
+    def write(self) -> None:
+        """Replace the spec's file by the edited text, whole or not at all.
+
+        Raises:
+            SpecError: it was changed in the meantime (V374), or can't be written (V347).
+        """
+        data = _unchanged(self.path, self.source.text)
+        mark = BOM if data.startswith(BOM) else b""
+        write_atomically(self.path, mark + self.edited.text.encode())
+
+
+def _unchanged(path: Path, text: str) -> bytes:
+    """What the file holds, which must still be the text that was fitted."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        why = str(error.strerror).lower()
+        raise fault("V374", path, f"the spec can't be read any more: {why}") from error
+    if data.removeprefix(BOM) != text.encode():
+        message = "the spec was changed while it was fitted, so nothing is written"
+        raise fault("V374", path, message, "run the command again")
+    return data

@@ -1,0 +1,124 @@
+"""From a diagnosis to aims: which of its numbers stand in the spec, and where.
+
+A gain of a rate, a dead time or a saturation is no number of the spec: there the structure differs.
+"""
+
+import math
+from typing import Final
+
+from runtime.program import Program
+from specc.fitting.aims import Aim, Aims, AnyAim
+from specc.fitting.readings import OF_INPUTS, OF_SENSORS, affine, delays, mended
+from verifier.report.diagnosis import (
+    Candidate,
+    CandidateKind,
+    Diagnosis,
+    ParameterKind,
+    Refitted,
+    Told,
+)
+from verifier.report.report import Standing
+from verifier.report.wording import listed, percent
+
+ENOUGH: Final = 0.6
+"""What is moved explains at least this share of the error beyond noise."""
+SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
+LATE: Final = (CandidateKind.LATE_LOG, CandidateKind.CLOCK_OFFSET)
+OF_LOGS: Final = (CandidateKind.SIGN, CandidateKind.UNIT_SLIP)
+
+
+def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
+    """What the diagnosis of one recording would have moved, and what speaks against it."""
+    found = _found(program, diagnosis)
+    aims = tuple(each for each in found if not isinstance(each, str))
+    beyond = tuple(each for each in found if isinstance(each, str))
+    if diagnosis.told is Told.STRUCTURE_DIFFERS and not found:
+        beyond = diagnosis.sentences[:2]
+    return Aims(aims, beyond, _left(diagnosis) if aims else (), _choices(diagnosis))
+
+
+def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
+    bindings = {binding.name: binding for binding in program.bindings}
+    moved = _in_order(diagnosis)
+    of_rates = {each.name for each in moved if each.kind is ParameterKind.RATE_GAIN}
+    found: list[AnyAim | str] = []
+    by_hand: set[str] = set()
+    for each in (candidate for candidate in diagnosis.candidates if candidate.is_taken):
+        if each.kind in LATE:
+            found += delays(each, bindings)
+        elif each.kind in OF_LOGS and not of_rates & set(each.applies_to):
+            found.append(mended(each, program, bindings))
+            by_hand.update(each.applies_to)
+        elif each.kind not in SCALARS + OF_LOGS:
+            found.append(each.sentence)
+    names = dict.fromkeys(each.name for each in moved if each.kind in OF_INPUTS + OF_SENSORS)
+    for name in names:
+        own: dict[ParameterKind, Refitted] = {
+            e.kind: e for e in moved if e.name == name and e.kind in OF_INPUTS + OF_SENSORS
+        }
+        if name not in by_hand:
+            found += affine(name, own, program, bindings)
+    for number in moved:
+        if number.kind not in OF_INPUTS + OF_SENSORS:
+            found.append(_own(number, program))
+    return found
+
+
+def _in_order(diagnosis: Diagnosis) -> list[Refitted]:
+    """The numbers that explain something, in the order in which they were taken in."""
+    labels = [each.label for each in diagnosis.candidates]
+    moved = [each for each in diagnosis.refitted if each.is_moved]
+
+    def place(number: Refitted) -> int:
+        word = "gain" if number.kind in {OF_INPUTS[0], OF_SENSORS[0]} else "offset"
+        label = f"{word} of {number.name}"
+        return labels.index(label) if label in labels else 0
+
+    return sorted(moved, key=place)
+
+
+def _own(found: Refitted, program: Program) -> Aim | str:
+    """A constant or a control that the recording held at one value."""
+    half = 0.5 * (found.interval.high - found.interval.low)
+    bindings = {binding.name: binding for binding in program.bindings}
+    match found.kind:
+        case ParameterKind.CONSTANT:
+            path = ("constants", found.name, "value")
+        case ParameterKind.CONTROL:
+            is_told = found.name in bindings and bindings[found.name].constant is not None
+            path = (
+                ("trace", found.name, "constant") if is_told else ("control", found.name, "default")
+            )
+        case _:
+            return f"{found.sentence}; no number of the spec stands for it"
+    unit = found.unit
+    return Aim(path, found.name, found.value, half, unit.text, unit.scale, found.sentence)
+
+
+def _left(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """What the moved numbers leave open."""
+    left = [each.name for each in diagnosis.after if each.standing is Standing.EXCEEDED]
+    said = [f"{listed(left)} would still depart"] if left else []
+    share = _share([each for each in diagnosis.candidates if each.is_taken])
+    if share < ENOUGH:
+        said.append(f"they explain {percent(max(share, 0.0))} of the error beyond noise only")
+    return tuple(said)
+
+
+def _share(taken: list[Candidate]) -> float:
+    """Each explains a share of what those before it left."""
+    return 1.0 - math.prod(1.0 - each.evidence.share for each in taken)
+
+
+def _choices(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Other explanations that are as good."""
+    if diagnosis.told is not Told.CANNOT_TELL:
+        return ()
+    taken = [each for each in diagnosis.candidates if each.is_taken and each.alike]
+    return (
+        tuple(
+            f"{each.label}: this recording can't tell it from {listed(list(each.alike[:3]))}"
+            for each in taken
+        )
+        or diagnosis.sentences[:1]
+    )

@@ -1,0 +1,119 @@
+"""How a log is to be read, as numbers of `trace:` entries: delays, scales, offsets and units."""
+
+import re
+from typing import Final
+
+from runtime.program import Binding, Program
+from spec_schema.faults import UnitFault
+from spec_schema.units import parse_unit
+from specc.fitting.aims import Aim, AnyAim, UnitAim
+from verifier.fidelity.stretches.needs import parts_of
+from verifier.report.diagnosis import Candidate, CandidateKind, ParameterKind, Refitted
+
+OF_INPUTS: Final = (ParameterKind.INPUT_GAIN, ParameterKind.INPUT_OFFSET)
+OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
+WRITTEN: Final = {"degrees": "deg", "radians": "rad", "millimetres": "mm", "metres": "m"}
+"""Units by the word that a candidate's label begins with: what the log is in."""
+ANGLE_OR_LENGTH: Final = re.compile(r"\b(deg|rad|mm|m)\b")
+NEAR: Final = 0.02
+
+
+def delays(candidate: Candidate, bindings: dict[str, Binding]) -> list[Aim | str]:
+    """The entries of all that comes late together.
+
+    A shift of what acts is the opposite of a delay of the log; it comes on top of the spec's own.
+    """
+    (shift,) = candidate.numbers
+    half = 0.5 * (shift.interval.high - shift.interval.low)
+    found: list[Aim | str] = []
+    for name in candidate.applies_to:
+        if not _is_bound(name, bindings):
+            found.append(_unbound(candidate.sentence, name))
+            continue
+        value = bindings[name].delay - shift.value
+        path = ("trace", name, "delay")
+        found.append(Aim(path, f"delay of {name}", value, half, "s", 1.0, candidate.sentence))
+    return found
+
+
+def affine(
+    name: str, moved: dict[ParameterKind, Refitted], program: Program, bindings: dict[str, Binding]
+) -> list[Aim | str]:
+    """The scale and the offset of one entry.
+
+    moved: in the order in which they act. Of an input, `gain * v + offset` takes the place of v;
+    of a sensor, v is `scale * x + offset`.
+    """
+    said = "; ".join(each.sentence for each in moved.values())
+    if not _is_bound(name, bindings):
+        return [_unbound(said, name)]
+    factor, summand = _for_inputs(moved) if set(moved) & set(OF_INPUTS) else _for_sensors(moved)
+    binding, found = bindings[name], list[Aim | str]()
+    own = parts_of(program)[name].unit
+    if factor != 1.0:
+        value = factor * binding.scale
+        half = _relative(moved, (ParameterKind.INPUT_GAIN, ParameterKind.SENSOR_SCALE)) * abs(value)
+        found.append(Aim(("trace", name, "scale"), f"scale of {name}", value, half, "1", 1.0, said))
+    offset = factor * binding.offset + summand
+    if offset != binding.offset:
+        offsets = (ParameterKind.INPUT_OFFSET, ParameterKind.SENSOR_OFFSET)
+        half = max([_half(moved[kind]) for kind in offsets if kind in moved], default=0.0)
+        half = half or abs(offset) * _relative(moved, tuple(moved))
+        path = ("trace", name, "offset")
+        found.append(Aim(path, f"offset of {name}", offset, half, own.text, own.scale, said))
+    return found
+
+
+def mended(candidate: Candidate, program: Program, bindings: dict[str, Binding]) -> AnyAim | str:
+    """A wrong sign or unit in the log."""
+    (name,) = candidate.applies_to
+    if not _is_bound(name, bindings):
+        return _unbound(candidate.sentence, name)
+    binding = bindings[name]
+    if candidate.kind is CandidateKind.SIGN:
+        path = ("trace", name, "scale")
+        scale = -binding.scale
+        return Aim(path, f"scale of {name}", scale, 0.0, "1", 1.0, candidate.sentence)
+    own = parts_of(program)[name].unit
+    meant = WRITTEN.get(candidate.label.partition(" ")[0], "")
+    text = ANGLE_OR_LENGTH.sub(meant, own.text, count=1) if meant else ""
+    factor = candidate.numbers[0].value
+    try:
+        scale = parse_unit(text).scale
+    except UnitFault:
+        scale = 0.0
+    if abs(scale / (factor * binding.unit.scale) - 1.0) > NEAR + 0.1:
+        return f"{candidate.sentence}; write the unit of the log into 'trace: {name}:' by hand"
+    return UnitAim(("trace", name, "unit"), f"unit of {name}", text, candidate.sentence)
+
+
+def _for_inputs(moved: dict[ParameterKind, Refitted]) -> tuple[float, float]:
+    factor, summand = 1.0, 0.0
+    for kind, each in moved.items():
+        if kind is ParameterKind.INPUT_GAIN:
+            factor, summand = each.value * factor, each.value * summand
+        elif kind is ParameterKind.INPUT_OFFSET:
+            summand += each.value
+    return factor, summand
+
+
+def _for_sensors(moved: dict[ParameterKind, Refitted]) -> tuple[float, float]:
+    scale = moved[ParameterKind.SENSOR_SCALE].value if ParameterKind.SENSOR_SCALE in moved else 1.0
+    offset = moved.get(ParameterKind.SENSOR_OFFSET)
+    return 1.0 / scale, 0.0 if offset is None else -offset.value / scale
+
+
+def _half(found: Refitted) -> float:
+    return 0.5 * (found.interval.high - found.interval.low)
+
+
+def _relative(moved: dict[ParameterKind, Refitted], kinds: tuple[ParameterKind, ...]) -> float:
+    return max(_half(each) / abs(each.value) for kind, each in moved.items() if kind in kinds)
+
+
+def _is_bound(name: str, bindings: dict[str, Binding]) -> bool:
+    return name in bindings and bool(bindings[name].path)
+
+
+def _unbound(said: str, name: str) -> str:
+    return f"{said}; 'trace:' has no entry for {name} that could say so"
