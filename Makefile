@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -43,6 +43,9 @@ schema: .venv/ready ## rewrite the JSON Schemas in docs/schema
 
 gallery: .venv/ready ## draw docs/img and docs/gallery.md
 	$(BIN)/python docs/draw_gallery.py
+
+study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with planted departures
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.verdicts
 
 bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
