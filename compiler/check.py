@@ -47,6 +47,8 @@ class Checked:
     design: Design | None = None
 
 
+BY_DOMAINS: Final = ("S25", "S26")
+"""Modes and sketches: what is told of them may follow from the domain of a variable."""
 COUNTING: Final = frozenset({"S267"})
 """What is told of all features of a sketch together."""
 
@@ -75,6 +77,8 @@ def _is_news(found: Diagnostic, lost: Collection[str], told: Collection[Span | N
     Warnings wait until the mistakes are mended.
     """
     if told and found.severity is Severity.WARNING:
+        return False
+    if lost and found.code.startswith(BY_DOMAINS):
         return False
     return found.span not in told and not any(f"'{name}'" in found.message for name in lost)
 

@@ -60,11 +60,11 @@ def checked(
         return None
     known = {n: scope.dimensions[n] for n in names_in(expr)}
     dimensions = {name: dimension for name, dimension in known.items() if dimension is not None}
-    if len(dimensions) < len(known):
-        return expr  # an unreadable unit was told already; anything said here would follow from it
     dimension, faults = dimension_of(expr, dimensions)
     for fault in faults:
         findings.fault(path, fault)
+    if len(dimensions) < len(known):
+        return expr  # an unreadable unit was told already; the rate's own would follow from it
     if dimension is None or wanted is None or dimension == wanted.dimension:
         return expr
     if not _is_zero(expr):

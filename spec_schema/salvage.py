@@ -3,13 +3,14 @@
 A wrong number in one place must not hide a wrong dimension in another. So the parts that the
 models refuse are taken out, each with the smallest mapping that can do without it, and what is
 left is checked on; names that went with them are remembered, and nothing is said about those.
+Where a name's unit is known, a stand-in keeps its place, so that formulas can still be checked.
 Lists close up where an item went: `kept` leads back to the items as they were written.
 """
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, MutableMapping
 from dataclasses import dataclass
-from typing import Generic, TypeVar, final
+from typing import Final, Generic, TypeVar, final
 
 from pydantic import BaseModel, ValidationError
 
@@ -21,6 +22,18 @@ from spec_schema.places import Path, as_written
 _ROUNDS = 12
 _NAMED = frozenset({"state", "control", "constants", "output"})
 """The sections whose keys are names that other parts refer to."""
+
+_ROLES: Final = ("sensed", "driven", "both")
+_STAND_INS: Final[Mapping[str, Mapping[str, Plain]]] = {
+    "state": {
+        "domain": [-1, 1],
+        "role": "both",
+        "relates": {"agent": "unknown", "environment": "unknown"},
+    },
+    "control": {"domain": [-1, 1], "default": 0},
+    "constants": {"value": 1},
+}
+"""What takes the place of a declaration, beside its unit (and of a state its role)."""
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -89,14 +102,37 @@ class _Rest:
             holder, step = _holder(self.data, path), path[-1]
             written = as_written(path, self.kept)
             if isinstance(holder, dict) and step in holder:
-                del holder[str(step)]
                 if path[0] in _NAMED and len(path) == 2:
-                    self.lost.add(str(step))
+                    self._lose(str(path[0]), str(step), holder)
+                else:
+                    del holder[str(step)]
             elif isinstance(holder, list) and isinstance(step, int) and step < len(holder):
                 left = self.kept.get(written[:-1], tuple(range(len(holder))))
                 self.kept[written[:-1]] = (*left[:step], *left[step + 1 :])
                 del holder[step]
             self._gone.add(written)
+
+    def _lose(self, section: str, name: str, holder: MutableMapping[str, Plain]) -> None:
+        """Remember a name whose declaration can't be used, and put a stand-in there, once."""
+        stand_in = None if name in self.lost else _stand_in(section, holder[name])
+        self.lost.add(name)
+        if stand_in is None:
+            del holder[name]
+        else:
+            holder[name] = stand_in
+
+
+def _stand_in(section: str, declared: Plain) -> dict[str, Plain] | None:
+    """What takes the place of a declaration: its unit is kept; None where it has none."""
+    if section not in _STAND_INS or not isinstance(declared, dict) or "values" in declared:
+        return None
+    unit, role = declared.get("unit"), declared.get("role")
+    if not isinstance(unit, str):
+        return None
+    found: dict[str, Plain] = {**_STAND_INS[section], "unit": unit}
+    if section == "state" and role in _ROLES:
+        found["role"] = role
+    return found
 
 
 def _order(path: Path) -> tuple[tuple[int, str], ...]:

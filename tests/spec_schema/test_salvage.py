@@ -50,6 +50,42 @@ def test_a_declaration_that_is_wrong_goes_whole_and_is_remembered() -> None:
     assert examined.lost == {"goal"}
 
 
+@pytest.mark.parametrize(
+    "bad", ["domain: [1, -1]", "domain: [-9, 9], hold: far", "domian: [-9, 9]"]
+)
+@pytest.mark.parametrize(
+    "field",
+    [
+        'formula: {x: "goal - x", y: -y}',
+        "sketch: {over: [x, y], points: [{is: attractor, at: [7, 0]}]}",
+        "arrows: {over: [x, y], at: [[7, 0], [0, 1], [1, 0]], go: [[1, 0], [1, 1], [0, 1]]}",
+    ],
+)
+def test_the_domain_of_a_stand_in_is_never_spoken_of(bad: str, field: str) -> None:
+    """What stands in for a faulty declaration is ours: no message may follow from it."""
+    text = GOOD.replace(
+        "control:",
+        f"  y: {{unit: m, {bad}, role: both, relates: {{agent: a, environment: b}}}}\ncontrol:",
+    )
+    text = text.replace('formula: {x: "goal - x"}', field).replace("[-1, 1], role", "[-9, 9], role")
+    text += "fidelity: {tolerance: {x: 0.1 m, y: 0.1 m}, horizon: 1 s, region: {y: [-5, 5]}}\n"
+
+    examined = examine_source(Source("s.yaml", text))
+
+    own = {mistake.span for mistake in examined.mistakes}
+    found = [d for d in check_examined(examined) if d.span not in own]
+    assert [d for d in found if "y" in d.message.split() or d.code[:3] in {"S25", "S26"}] == []
+    assert not any("-1" in f"{d.message} {d.help}" for d in found)
+
+
+def test_a_formula_is_checked_although_a_declaration_that_it_reads_is_faulty() -> None:
+    text = GOOD.replace(", relates: {agent: a, environment: b}", "").replace("goal - x", "sin(x)")
+
+    codes = [found.code for found in check_examined(examine_source(Source("s.yaml", text)))]
+
+    assert codes == ["S101", "S142"]
+
+
 def test_without_states_nothing_is_left() -> None:
     examined = examine_source(Source("s.yaml", GOOD.replace("  x: {unit", "  - {unit")))
 
