@@ -73,10 +73,13 @@ def stamp_fault(samples: Samples) -> str:
     given = stamps > 0
     if np.count_nonzero(given) < 0.5 * given.size or not given.size:
         return "most sensor stamps are zero"
-    steps = np.diff(stamps[given])
+    logs = samples.log_times
+    if not given.all():
+        stamps, logs = stamps[given], logs[given]
+    steps = np.diff(stamps)
     if steps.size and np.count_nonzero(steps > 0) < 0.8 * steps.size:
         return "sensor stamps stand still or run backwards"
-    span, logged = _span(stamps[given]), _span(samples.log_times[given])
+    span, logged = _span(stamps), _span(logs)
     if logged > 0 and steps.size > 10 and not 0.8 < span / logged < 1.25:
         return f"sensor stamps span {span:.3g} s, log times {logged:.3g} s"
     return ""
