@@ -28,6 +28,8 @@ from verifier.report.diagnosis import Diagnosis
 from verifier.report.report import Report, Verdict
 from verifier.traces.trace import Trace
 
+AS_GOOD: Final = 0.95
+"""A reading has no numbers to fit, and so is preferred to those that gain little more."""
 FEWEST: Final = 4
 """With fewer windows nothing can be held out."""
 
@@ -88,7 +90,7 @@ def _better_reading(
         return None
     gained = selection.plain.objective - selection.final.objective
     found = reread(program, fidelity, trace, scene, selection.plain)
-    if found and found[0].gain > max(CLEAR, gained):
+    if found and found[0].gain > max(CLEAR, AS_GOOD * gained):
         return found[0]
     return None
 

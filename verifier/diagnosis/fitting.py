@@ -159,6 +159,17 @@ def correlation_time(scene: Scene, residual: Array) -> Array:
     return np.array(found)
 
 
+def white_part(scene: Scene, fitted: Fit) -> Array:
+    """How much (D,) of what is left looks like noise: what neighbours do not share."""
+    owner, real = owners(scene), used(scene)
+    found = []
+    for j, sigma in enumerate(fitted.sigma):
+        r = np.where(real, fitted.left.residual, 0.0)[:, owner == j]
+        shared = float(np.sum(r[:, 1:] * r[:, :-1])) / max(float(np.sum(r**2)), 1e-300)
+        found.append(sigma * np.sqrt(1.0 - min(max(shared, 0.0), 1.0)))
+    return np.array(found)
+
+
 def _at(
     scene: Scene, effects: tuple[Effect, ...], values: Values, starts: Array, sigma: Array
 ) -> Fit:

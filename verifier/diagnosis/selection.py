@@ -21,6 +21,7 @@ from verifier.diagnosis.fitting import (
     left_of_starts,
     objective,
     plain_fit,
+    white_part,
     white_slopes,
 )
 from verifier.diagnosis.heldout import Scored, scored
@@ -102,7 +103,8 @@ class Selection:
 
     def share(self, scene: Scene) -> float:
         """The share of the squared error beyond noise that all that was taken explains."""
-        floor = np.array([each.floor for each in scene.observed]) ** 2
+        known = np.array([each.floor for each in scene.observed])
+        floor = np.maximum(known, white_part(scene, self.final)) ** 2
         before, after = self.plain.sigma**2, self.final.sigma**2
         beyond = float(np.sum(np.maximum(before - floor, 0.0) / after))
         return min(float(np.sum((before - after) / after)) / max(beyond, 1e-300), 1.0)
