@@ -98,7 +98,7 @@ def test_a_sensed_state_without_closure_is_held_and_the_driven_one_is_the_line()
     ("axes", "held", "message"),
     [
         (("x", "w"), {}, "no state variable is named 'w'; "),
-        (("x", "x"), {}, "four different axes"),
+        (("x", "x"), {}, "stands twice among the axes"),
         (("x", "y", "z", "w", "v"), {}, "one to four"),
         (("x", "y"), {"x": 1.0}, "'x' is an axis"),
         (("x", "y"), {"rhoo": 1.0}, "did you mean 'rho'"),
