@@ -181,6 +181,10 @@ class SketchedPoint(StrictModel):
             yield Mistake(
                 "S262", "a saddle does not turn", "remove 'turns'", ("turns",), on_key=True
             )
+        elif self.turns != 0.0 and self.directions is not None:
+            message = "a point that turns has no directions: all are alike"
+            help_ = "remove 'turns' or 'directions'"
+            yield Mistake("S262", message, help_, ("directions",), on_key=True)
         elif self.turns != 0.0 and isinstance(self.rates, tuple):
             message = "a point that turns has one rate: all its directions are alike"
             yield Mistake("S262", message, "write one rate, or remove 'turns'", ("rates",))
