@@ -46,7 +46,7 @@ def variable(
         for share in (0.25, 0.5, 1.0)
     )
     around = Interval(mean - 0.1 * abs(mean), mean + 0.1 * abs(mean))
-    region = RegionMean({"x": (0.0, 1.0)}, None, None, 12, mean, around, standing)
+    region = RegionMean({"x": (0.0, 1.0)}, {}, None, None, 12, mean, around, standing)
     errors = mean + 0.2 * tolerance * rng.standard_normal(windows)
     errors[:1] = np.nan
     return VariableResult(
@@ -60,6 +60,7 @@ def variable(
         systematic=0.5 * abs(mean),
         scatter=0.2 * tolerance,
         allowed_scatter=0.0,
+        unjudged=0,
         mean=mean,
         mean_interval=around,
         regions=(region,),

@@ -23,12 +23,13 @@ from verifier.fidelity.judging.verdict import decide, not_told, notes_of, too_sh
 from verifier.fidelity.shooting.study import Study, study_of
 from verifier.fidelity.stretches.needs import Needs, held, needs_of, parts_of
 from verifier.fidelity.stretches.segments import Segments, on_circle, segments_of
-from verifier.fidelity.stretches.spans import contains, length, merge
+from verifier.fidelity.stretches.spans import contains, intersect, length, merge
 from verifier.fidelity.switching.judge import switching_of
 from verifier.fidelity.switching.verdict import with_switching
 from verifier.report.report import (
     CellAxis,
     Coverage,
+    Exclusion,
     Report,
     SpecIdentity,
     TraceIdentity,
@@ -115,15 +116,26 @@ def _judged(program: Program, trace: Trace, fidelity: Fidelity, study: Study) ->
         confidence=CONFIDENCE,
         variables=results,
         coverage=coverage,
-        exclusions=study.segments.exclusions,
+        exclusions=(*study.segments.exclusions, *_left_over(study, inside)),
         losses=trace.losses,
-        notes=(*trace.notes, *notes_of(study)),
+        notes=(*trace.notes, *notes_of(study, results)),
         spec=_spec(program),
         trace=_identity(trace, study.segments, length(inside)),
         starts=frozen(windows.times),
         places=places_of(program, study),
         units=units,
     )
+
+
+def _left_over(study: Study, inside: Array) -> list[Exclusion]:
+    """What the windows, which start every half horizon, leave at the ends of the stretches."""
+    base = study.plan.samples[study.plan.needs.base].times
+    spans = study.segments.spans
+    seconds = length(spans) - length(intersect(spans, inside))
+    samples = int(np.sum(contains(spans, base) & ~contains(inside, base)))
+    if samples == 0:
+        return []
+    return [Exclusion("left over at the ends of stretches, where no window fits", seconds, samples)]
 
 
 def _unjudged(

@@ -60,6 +60,7 @@ def _variable(result: VariableResult, report: Report) -> dict[str, object]:
         "systematic": _number(result.systematic, unit),
         "scatter": _number(result.scatter, unit),
         "allowed_scatter": _number(result.allowed_scatter, unit),
+        "unjudged": result.unjudged,
         "mean": _number(result.mean, unit),
         "mean_interval": _interval(result.mean_interval, unit),
         "noise": _noise(result.noise, unit),
@@ -109,6 +110,7 @@ def _region(region: RegionMean, unit: Unit, report: Report) -> dict[str, object]
             }
             for name, (low, high) in region.bounds.items()
         },
+        "values": region.values,
         "moved": None if region.moved is None else _number(region.moved, unit),
         "hurried": None if region.hurried is None else _number(region.hurried, unit),
         "windows": region.windows,
@@ -131,6 +133,7 @@ def _coverage(coverage: Coverage) -> dict[str, object]:
                 "low": _number(axis.low, axis.unit),
                 "high": _number(axis.high, axis.unit),
                 "cells": axis.count,
+                "values": list(axis.values),
             }
             for axis in coverage.axes
         ],

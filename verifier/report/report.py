@@ -82,13 +82,16 @@ class HorizonFigure:
 class RegionMean:
     """The mean of measured minus predicted at the horizon, over windows of one part.
 
-    bounds: the part, `low, high` per name, SI; empty where there is but one. The mean speaks of
-    windows in which the variable was predicted to move about as far as `moved`, or by `hurried`
-    farther in the last tenth of the horizon than in the first; None where all are alike. mean is
+    bounds: the part, `low, high` per name, SI; values: its value per discrete name. Both are empty
+    where the mean is that of all windows. The mean speaks of
+    windows in which the variable was predicted to move about as far as `moved`, or in which
+    it would have moved by `hurried` farther had what drives it come a twentieth of the horizon
+    earlier; None where all are alike. mean is
     signed: positive where the robot ends above the prediction.
     """
 
     bounds: dict[str, tuple[float, float]]
+    values: dict[str, str]
     moved: float | None
     hurried: float | None
     windows: int
@@ -123,6 +126,7 @@ class VariableResult:
     part, the noise of the sensors taken out; `allowed_scatter` is what the spec allows beside the
     tolerance.
     mean: the signed mean error at the declared horizon over all windows.
+    unjudged: windows in a discrete value that was seen too rarely to be judged on its own.
     regions: the parts; worst: the one that departs most surely, if any.
     errors: (W,) measured minus predicted at the declared horizon, NaN where a window has none.
     views: a few windows, in order of time.
@@ -138,6 +142,7 @@ class VariableResult:
     systematic: float
     scatter: float
     allowed_scatter: float
+    unjudged: int
     mean: float
     mean_interval: Interval
     regions: tuple[RegionMean, ...]
@@ -155,13 +160,17 @@ class VariableResult:
 @final
 @dataclass(frozen=True, slots=True)
 class CellAxis:
-    """One axis of the coverage: `count` equal cells over [low, high]."""
+    """One axis of the coverage: `count` equal cells over [low, high].
+
+    values: of a discrete variable, the names of its cells; else empty.
+    """
 
     name: str
     unit: Unit
     low: float
     high: float
     count: int
+    values: tuple[str, ...] = ()
 
 
 @final

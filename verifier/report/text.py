@@ -87,7 +87,12 @@ def _seen(report: Report) -> str:
 
 
 def _covered(coverage: Coverage) -> str:
-    spans = [f"{a.name} {span(a.low, a.high, a.unit)}" for a in coverage.axes]
+    spans = [
+        f"{a.name} ({', '.join(a.values)})"
+        if a.values
+        else f"{a.name} {span(a.low, a.high, a.unit)}"
+        for a in coverage.axes
+    ]
     required = f"{percent(coverage.required)} required" if coverage.required else "none required"
     return f"{percent(coverage.share)} of {listed(spans)} was seen, {required}"
 

@@ -8,9 +8,10 @@ import pytest
 
 from runtime.program import Unit
 from verifier.fidelity.verify import verify
+from verifier.report.layout import WIDTH
 from verifier.report.record import as_json
 from verifier.report.report import Exclusion, Report
-from verifier.report.text import WIDTH, as_text
+from verifier.report.text import as_text
 from verifier.report.wording import number, quantity
 from verifier.traces.trace import Loss
 

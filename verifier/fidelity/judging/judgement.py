@@ -119,7 +119,9 @@ def _result(
     kept = _kept(study, every[-1])
     own = tuple(replace(each, values=each.values[kept]) for each in conditions)
     judged = judge_errors(every[-1].part(kept), own, figures[-1].interval, (tolerance, scatter))
-    regions = tuple(_region(mean) for mean in judged.parts.means)
+    program = study.plan.model.flow.program
+    named = {s.name: s.values for s in program.states if s.kind is Kind.DISCRETE}
+    regions = tuple(_region(mean, named) for mean in judged.parts.means)
     return VariableResult(
         name=name,
         unit=samples.state.unit,
@@ -131,6 +133,7 @@ def _result(
         systematic=judged.systematic,
         scatter=judged.parts.scatter,
         allowed_scatter=scatter,
+        unjudged=judged.parts.unjudged,
         mean=judged.mean,
         mean_interval=judged.mean_interval,
         regions=regions,
@@ -173,9 +176,12 @@ def _figure(horizon: float, found: Departure, noise: float, tolerance: float) ->
     )
 
 
-def _region(found: PartMean) -> RegionMean:
+def _region(found: PartMean, named: dict[str, tuple[str, ...]]) -> RegionMean:
+    """The mean as the report tells it; `named`: the values of the discrete states."""
+    bounds = found.part.bounds
     return RegionMean(
-        bounds=found.part.bounds,
+        bounds={name: ends for name, ends in bounds.items() if name not in named},
+        values={name: named[name][int(low)] for name, (low, _) in bounds.items() if name in named},
         moved=found.moved,
         hurried=found.hurried,
         windows=int(np.sum(found.part.members)),

@@ -29,6 +29,8 @@ WINDOWS_PER_HORIZON: Final = 2
 ALIKE: Final = 0.25
 """Moves that differ by less than this share of the tolerance are of one length: even a variable
 that does not move at all would depart by no more."""
+ROUNDING: Final = 1e-6
+"""Less than this share of the tolerance is rounding, which has no correlation worth the name."""
 CLUSTERS_PER_COLUMN: Final = 3
 """So many clusters for each number that is estimated in a part."""
 MOSTLY: Final = 0.5
@@ -66,6 +68,7 @@ class PartMean:
 class PartMeans:
     """The means in all parts, and what is left of the errors.
 
+    means: everywhere, in the parts, and in finer ones where the tolerance is exceeded.
     shown: a mean beyond this is shown to be somewhere, at the given chance of error. scatter: how
     far single windows lie from the mean of their part, the noise of the sensors taken out.
     unjudged: windows in no part. clusters: (W,) which windows depend on one another.
@@ -98,22 +101,21 @@ def part_means(
     it decides as Holm's correction does whether there is any. That all means are within it needs
     no correction (Berger 1982).
     """
-    clusters, parts, residual = _parted(errors, conditions, tolerance)
-    found = [_manners(errors, clusters, tolerance)]
+    clusters, fine, parts, residual = _parted(errors, conditions, tolerance)
+    told = [_manners(errors, clusters, tolerance)]
     if len(parts) > 1:
-        found += [_plain(errors, part, clusters) for part in parts]
-    shared = chance / sum(len(group.means.value) for group in found)
-    lowest = [np.maximum(low, -high) for low, high in (g.means.bounds(shared) for g in found)]
+        told += [_plain(errors, part, clusters) for part in parts]
+    sought = [_plain(errors, part, clusters) for part in fine] if len(fine) > len(parts) else []
+    shared = chance / sum(len(group.means.value) for group in (*told, *sought))
     judged = np.any([part.members for part in parts], axis=0)
-    free = max(int(np.sum(judged)) - len(parts) - len(found[0].manners) // 2, 1)
-    own = float(np.sum(residual[judged] ** 2)) / free - float(np.mean(errors.variance[judged]))
+    free = max(int(np.sum(judged)) - len(parts) - len(told[0].manners) // 2, 1)
+    noise = float(np.sum(errors.variance[judged])) / max(int(np.sum(judged)), 1)
+    own = float(np.sum(residual[judged] ** 2)) / free - noise
+    means = [mean for group in told for mean in _told(group, shared, tolerance)]
+    finer = [mean for group in sought for mean in _told(group, shared, tolerance)]
     return PartMeans(
-        means=tuple(
-            mean
-            for group, beyond in zip(found, lowest, strict=True)
-            for mean in _told(group, beyond, tolerance)
-        ),
-        shown=max(float(ends.max()) for ends in lowest),
+        means=(*means, *(mean for mean in finer if mean.standing is Standing.EXCEEDED)),
+        shown=max(float(_beyond(group, shared).max()) for group in (*told, *sought)),
         scatter=float(np.sqrt(max(own, 0.0))),
         unjudged=int(np.sum(~judged)),
         clusters=clusters,
@@ -130,21 +132,24 @@ def clusters_of(residual: Array) -> Integers:
 
 def _parted(
     errors: Errors, conditions: tuple[Condition, ...], tolerance: float
-) -> tuple[Integers, tuple[Part, ...], Array]:
-    """The clusters (W,), the parts, and what they leave unexplained of the errors (W,).
+) -> tuple[Integers, tuple[Part, ...], tuple[Part, ...], Array]:
+    """The clusters (W,), fine parts, coarse ones, and what these leave of the errors (W,).
 
-    The parts are as fine as the data can tell within the tolerance. What windows scatter by is
-    seen in the finest parts that there are, where the least of it is due to different places.
+    The coarse parts are as fine as the data can tell within the tolerance: only there can a mean
+    be shown to be within it. What windows scatter by is seen in the finest parts that there are,
+    where the least of it is due to different places.
     """
     clusters = clusters_of(np.zeros(len(errors.mean)))
     slopes = _manners(errors, clusters, tolerance).means.residual
+    if np.max(np.abs(slopes)) <= ROUNDING * tolerance:
+        slopes = np.zeros(len(slopes))
     clusters = clusters_of(_within(slopes, parts_of(conditions, clusters)))
     fine = parts_of(conditions, clusters)
     unrest = _unrest(_within(slopes, fine), clusters, fine)
     wanted = (STUDENT * unrest / (SHARP * tolerance)) ** 2 if tolerance > 0.0 else np.inf
     least = int(np.clip(np.ceil(wanted), LEAST, len(errors.mean)))
     parts = parts_of(conditions, clusters, least)
-    return clusters, parts, _within(slopes, parts)
+    return clusters, fine, parts, _within(slopes, parts)
 
 
 def _within(values: Array, parts: tuple[Part, ...]) -> Array:
@@ -205,8 +210,16 @@ def _leans(deviation: Array, clusters: Integers) -> bool:
     return bool(shares.max() > LEANING * shares.sum())
 
 
-def _told(group: _Group, beyond: Array, tolerance: float) -> list[PartMean]:
+def _beyond(group: _Group, chance: float) -> Array:
+    """How far each mean is shown to be from zero; negative where it is not."""
+    low, high = group.means.bounds(chance)
+    return np.maximum(low, -high)
+
+
+def _told(group: _Group, shared: float, tolerance: float) -> list[PartMean]:
+    """The means with their intervals; `shared`: the chance of wrongly finding one exceeded."""
     low, high = group.means.bounds((1.0 - CONFIDENCE) / 2.0)
+    beyond = _beyond(group, shared)
     found = []
     for k, value in enumerate(group.means.value):
         interval = Interval(float(low[k]), float(high[k]))

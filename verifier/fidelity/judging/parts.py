@@ -50,12 +50,15 @@ def parts_of(
 ) -> tuple[Part, ...]:
     """The parts, with at least so many clusters each.
 
-    Windows in none of them have a discrete value that was seen too rarely.
+    Windows in none of them have a discrete value that was seen too rarely; where all were, there
+    is one part.
     """
-    parts = [Part(np.ones(len(clusters), dtype=bool))]
+    whole = Part(np.ones(len(clusters), dtype=bool))
+    parts = [whole]
     for each in conditions:
         if each.is_discrete:
             parts = [finer for part in parts for finer in _valued(part, each, clusters)]
+    parts = parts or [whole]
     smooth = tuple(each for each in conditions if not each.is_discrete)
     spreads = np.array([_spread(each.values) for each in smooth])
     leaves = [

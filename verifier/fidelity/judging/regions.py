@@ -37,7 +37,7 @@ def coverage_of(axes: tuple[CellAxis, ...], values: Array, required: float) -> C
 def _axis(part: State | Control, edges: tuple[float, float], count: int) -> CellAxis:
     if isinstance(part, State) and part.kind is Kind.DISCRETE:
         values = len(part.values)
-        return CellAxis(part.name, part.unit, -0.5, values - 0.5, values)
+        return CellAxis(part.name, part.unit, -0.5, values - 0.5, values, part.values)
     return CellAxis(part.name, part.unit, *edges, count)
 
 

@@ -5,7 +5,14 @@ import numpy as np
 from runtime.arrays import Array, Booleans
 from runtime.program import Unit
 from verifier.fidelity.shooting.study import Study
-from verifier.report.report import Coverage, Interval, RegionMean, Standing, VariableResult
+from verifier.report.report import (
+    CellAxis,
+    Coverage,
+    Interval,
+    RegionMean,
+    Standing,
+    VariableResult,
+)
 from verifier.report.wording import listed, number, percent, quantity, seconds, span
 
 EXPLAINS = 0.5
@@ -210,25 +217,32 @@ def unseen(coverage: Coverage) -> list[str]:
     for position, axis in enumerate(coverage.axes):
         others = tuple(i for i in range(seen.ndim) if i != position)
         empty = np.asarray(~np.any(seen, axis=others))
-        edges = np.linspace(axis.low, axis.high, axis.count + 1)
-        ranges = [span(edges[a], edges[b], axis.unit) for a, b in _runs(empty)]
+        ranges = _unseen_ranges(axis, empty)
         if ranges:
-            advice.append(f"drive with {axis.name} from {listed(ranges)}: not seen at all")
+            through = axis.name if axis.values else f"{axis.name} from"
+            advice.append(f"drive with {through} {listed(ranges)}: not seen at all")
     if advice:
         return advice
     return ["drive through more combinations: every axis was covered, but not jointly"]
 
 
+def _unseen_ranges(axis: CellAxis, empty: Booleans) -> list[str]:
+    if axis.values:
+        return [name for name, is_empty in zip(axis.values, empty, strict=True) if is_empty]
+    edges = np.linspace(axis.low, axis.high, axis.count + 1)
+    return [span(edges[a], edges[b], axis.unit) for a, b in _runs(empty)]
+
+
 def where(region: RegionMean, result: VariableResult, units: dict[str, Unit]) -> str:
     """A part in words: `x from 0 to 1 m, moves of 0.3 m`; empty where it is everything."""
-    told = [
-        f"{name} from {span(low, high, units[name])}" if high > low else f"{name} {number(low)}"
-        for name, (low, high) in region.bounds.items()
+    told = [f"{name} {value}" for name, value in region.values.items()]
+    told += [
+        f"{name} from {span(low, high, units[name])}" for name, (low, high) in region.bounds.items()
     ]
     if region.moved is not None:
         told.append(f"moves of {quantity(region.moved, result.unit)}")
     if region.hurried is not None:
-        told.append(f"its rate {'rising' if region.hurried > 0.0 else 'falling'}")
+        told.append(f"what drives it {'rising' if region.hurried > 0.0 else 'falling'}")
     return ", ".join(told)
 
 

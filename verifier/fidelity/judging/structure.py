@@ -10,7 +10,10 @@ For a forecast f of errors e with mean m(situation):
 
 whatever f is: a poor forecast shows too little, never too much. The left side is a mean, and gets
 Student's t over clusters, from what the forecast missed: the situations are given, only the errors
-in them are chance. Letters: W windows, d quantities that make up the situation.
+in them are chance. Two forecasts are made, which share the chance of error: by a constant and
+slopes alone, which little data suffice for, and with bumps beside them.
+
+Letters: W windows, d quantities that make up the situation.
 """
 
 from typing import Final
@@ -43,14 +46,29 @@ def shown_structure(errors: Array, situation: Array, clusters: Integers, chance:
     count = int(place.max(initial=-1)) + 1
     if count < FEWEST or not np.any(errors):
         return 0.0
-    forecast = _foretold(errors, _scaled(situation), place)
+    scaled = _scaled(situation)
+    plain = 1.0 + scaled @ scaled.T
+    kernels = (plain, plain + _bumps(scaled))
+    return max(_shown(errors, kernel, place, chance / len(kernels)) for kernel in kernels)
+
+
+def _shown(errors: Array, kernel: Array, place: Integers, chance: float) -> float:
+    """What the forecast by one kernel (W, W) shows."""
+    forecast = _foretold(errors, kernel, place)
     size = float(np.sqrt(np.mean(forecast**2)))
     if size == 0.0:
         return 0.0
+    count = int(place.max()) + 1
     mean = float(np.mean(errors * forecast)) / size
     sums = np.bincount(place, weights=(errors - forecast) * forecast / size)
     error = float(np.sqrt(np.sum(sums**2) * count / (count - 1.0)) / len(errors))
     return max(0.0, mean - float(special.stdtrit(count - 1, 1.0 - chance)) * error)
+
+
+def _bumps(situation: Array) -> Array:
+    """How alike situations are (W, W): 1 for the same, 0 for distant ones."""
+    distance = np.sum((situation[:, None, :] - situation[None, :, :]) ** 2, axis=-1)
+    return np.asarray(np.exp(-0.5 * distance / (REACH**2 * max(situation.shape[1], 1))))
 
 
 def _scaled(situation: Array) -> Array:
@@ -60,16 +78,12 @@ def _scaled(situation: Array) -> Array:
     return np.asarray((situation - np.mean(situation, axis=0))[:, moving] / spread[moving])
 
 
-def _foretold(errors: Array, situation: Array, place: Integers) -> Array:
+def _foretold(errors: Array, kernel: Array, place: Integers) -> Array:
     """The forecast (W,) of each cluster from the others; its neighbours in time are left out, too.
 
-    A constant, slopes and bumps: constants and gains are foretold from anywhere, the rest from
-    near by. A Gaussian's mean given all but A is e_A - P_AA^-1 (P e)_A, P the inverse of the
-    covariance (Rasmussen and Williams 2006, section 5.4.2).
+    A Gaussian's mean given all but A is e_A - P_AA^-1 (P e)_A, P the inverse of the covariance
+    (Rasmussen and Williams 2006, section 5.4.2).
     """
-    distance = np.sum((situation[:, None, :] - situation[None, :, :]) ** 2, axis=-1)
-    width = REACH**2 * max(situation.shape[1], 1)
-    kernel = 1.0 + situation @ situation.T + np.exp(-0.5 * distance / width)
     precision = np.linalg.inv(kernel + RIDGE * np.eye(len(errors)))
     pulled = precision @ errors
     forecast = np.empty(len(errors))

@@ -130,7 +130,7 @@ def too_short(needs: Needs, segments: Segments, horizon: float) -> str:
     )
 
 
-def notes_of(study: Study) -> list[str]:
+def notes_of(study: Study, results: tuple[VariableResult, ...]) -> list[str]:
     """How the figures were made: clocks, windows, noise, losses on the way."""
     clocks = sorted({series.clock for series in study.plan.needs.series})
     windows = study.plan.windows
@@ -141,6 +141,12 @@ def notes_of(study: Study) -> list[str]:
     lost = int(np.sum(study.shots.is_lost))
     if lost:
         notes.append(f"{lost} windows are not counted: their prediction left the spec's domain")
+    rare = max((result.unjudged for result in results), default=0)
+    if rare:
+        notes.append(
+            f"{rare} windows ran in a mode that was seen too rarely to be judged on its own: they"
+            " count for the whole alone"
+        )
     for each, noise in zip(study.plan.samples, study.noise, strict=True):
         if noise.correlation > WHITE:
             notes.append(

@@ -71,6 +71,17 @@ def moved_inputs(grid: Grid, needs: Needs, shifts: dict[str, Array]) -> Grid:
     return replace(grid, inputs=_within(inputs, needs))
 
 
+def early_inputs(grid: Grid, needs: Needs, mode: str, seconds: float) -> Grid | None:
+    """The grid with every measured input but the mode so much earlier; None where none changes."""
+    inputs = np.array(grid.inputs)
+    for column, each in enumerate(needs.inputs):
+        if each.series is not None and each.name != mode:
+            inputs[:, column] = held(each.series, grid.times + seconds)
+    if np.array_equal(inputs, grid.inputs):
+        return None
+    return Grid(grid.times, _within(inputs, needs), grid.columns, grid.leaps)
+
+
 def _grid(needs: Needs, times: Array) -> Grid:
     values = [
         np.full(len(times), each.value) if each.series is None else held(each.series, times)

@@ -15,9 +15,10 @@ from typing import final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
+from verifier.fidelity.shooting.grid import early_inputs
 from verifier.fidelity.shooting.noise import averaged
 from verifier.fidelity.shooting.plan import Plan
-from verifier.fidelity.shooting.prediction import chunks, predict
+from verifier.fidelity.shooting.prediction import Model, chunks, predict
 from verifier.fidelity.shooting.samples import Samples, edges, measured_states, turned
 from verifier.fidelity.shooting.windows import Chosen, chosen_samples, closest
 from verifier.report.report import Noise
@@ -29,6 +30,8 @@ FLOOR = 1e-7
 PRIOR = 0.1
 """The raw sample is known to at least this share of the domain: keeps the fit well posed."""
 FITS = 2
+EARLY = 0.05
+"""By this share of the horizon inputs are moved, to see what a late one does."""
 
 
 @final
@@ -38,8 +41,9 @@ class Errors:
 
     plain: measured minus predicted of the one sample nearest to the horizon. mean: averaged over
     the span around it. variance: of `mean`, from measurement noise. moved: how far the variable
-    was predicted to move. hurried: by how much it was predicted to move farther in the last tenth
-    of the horizon than in the first.
+    was predicted to move. hurried: how much farther it would have moved had its inputs come a
+    twentieth of the horizon earlier; without inputs that change, by how much it was predicted to
+    move farther in the last twentieth of the horizon than in the first.
     """
 
     plain: Array
@@ -105,8 +109,9 @@ def _shoot(plan: Plan, noise: tuple[Noise, ...]) -> Shots:
     fit = _fitted(plan, noise)
     paths = _perturbed(plan, fit.start, plan.windows.last)
     is_lost = ~np.all(np.isfinite(paths), axis=(0, 2, 3))
+    early = _early(plan, fit.start)
     errors = tuple(
-        tuple(_errors(plan, paths, fit, noise, (j, h)) for j in range(len(plan.samples)))
+        tuple(_errors(plan, (paths, early), fit, noise, (j, h)) for j in range(len(plan.samples)))
         for h in plan.horizons
     )
     return Shots(fit.start, is_lost, errors)
@@ -199,10 +204,17 @@ def _residuals(predicted: Array, samples: Samples, chosen: Chosen) -> Array:
 
 
 def _errors(
-    plan: Plan, paths: Array, fit: Fit, noise: tuple[Noise, ...], which: tuple[int, float]
+    plan: Plan,
+    every: tuple[Array, Array | None],
+    fit: Fit,
+    noise: tuple[Noise, ...],
+    which: tuple[int, float],
 ) -> Errors:
-    """The errors of variable j after a horizon, `which` = (j, horizon)."""
-    j, horizon = which
+    """The errors of variable j after a horizon, `which` = (j, horizon).
+
+    every: the predictions with their derivatives, and those from early inputs.
+    """
+    (paths, early), (j, horizon) = every, which
     chosen = chosen_samples(plan.samples[j], plan.windows, horizon)
     at = _at(plan, paths, chosen, j)
     residual = _residuals(at[0], plan.samples[j], chosen)
@@ -218,19 +230,33 @@ def _errors(
         mean=np.sum(residual * share, axis=1) + absent,
         variance=averaged(noise[j], count) + of_start + absent,
         moved=at[0][rows, one] - _at_start(plan, paths, j) + absent,
-        hurried=_hurried(plan, paths[0, ..., j], horizon) + absent,
+        hurried=_hurried(plan, paths[0, ..., j], early if early is None else early[..., j], horizon)
+        + absent,
     )
 
 
-def _hurried(plan: Plan, path: Array, horizon: float) -> Array:
-    """What a variable moves in the last tenth of the horizon beyond what it does in the first.
+def _early(plan: Plan, start: Array) -> Array | None:
+    """The predictions (W, S + 1, D) if all inputs came early; None where no input changes."""
+    mode, seconds = plan.model.flow.program.field.mode, EARLY * plan.windows.horizon
+    grid = early_inputs(plan.model.grid, plan.needs, mode, seconds)
+    if grid is None:
+        return None
+    paths = predict(Model(plan.model.flow, grid), start, plan.windows.first, plan.windows.last)
+    return paths[..., [each.column for each in plan.samples]]
 
-    path: (W, S + 1) as predicted from each window's first knot.
+
+def _hurried(plan: Plan, path: Array, early: Array | None, horizon: float) -> Array:
+    """What being early does to a variable, from its prediction and the one from early inputs.
+
+    path, early: (W, S + 1) from each window's first knot.
     """
     knots, first, length = plan.model.grid.times, plan.windows.first, path.shape[1]
-    tenths = []
-    for share in (0.0, 0.1, 0.9, 1.0):
+    moments = []
+    for share in (0.0, EARLY, 1.0 - EARLY, 1.0):
         there = np.searchsorted(knots, plan.windows.times + share * horizon * (1.0 - 1e-9))
-        tenths.append(np.clip(there - first, 0, length - 1))
-    start, early, late, end = (path[np.arange(len(path)), step] for step in tenths)
-    return np.asarray((end - late) - (early - start))
+        moments.append(np.clip(there - first, 0, length - 1))
+    rows = np.arange(len(path))
+    if early is not None:
+        return np.asarray(early[rows, moments[-1]] - path[rows, moments[-1]])
+    begin, soon, late, end = (path[rows, step] for step in moments)
+    return np.asarray((end - late) - (soon - begin))
