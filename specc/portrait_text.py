@@ -59,7 +59,8 @@ def portrait_summary(portrait: Portrait) -> str:
     axes = ", ".join(axis.name for axis in portrait.axes)
     held = ", ".join(f"{held.name} = {_value(held)}" for held in portrait.held)
     rows = [f"{portrait.name} over {axes}" + (f", at {held}" if held else "")]
-    if not portrait.fixed_points and not _is_proved_empty(portrait):
+    still = portrait.completeness.still
+    if not portrait.fixed_points and not still and not _is_proved_empty(portrait):
         rows.append("  no fixed points found")
     rows += [f"  {_fixed_point(point, portrait)}" for point in portrait.fixed_points]
     rows += [f"  {_cycle(cycle, portrait)}" for cycle in portrait.cycles]
@@ -89,7 +90,9 @@ def proof_sentences(portrait: Portrait) -> list[str]:
         return []
     proved = sum(point.proved for point in portrait.fixed_points)
     count = len(proof.undecided)
-    if proof.complete:
+    if proof.still and count:
+        sentences = [f"Proved of {proof.about}: {_beside_lines(count)}"]
+    elif proof.complete:
         sentences = [f"Proved of {proof.about}: {_all_there_is(proved)}"]
     elif count:
         boxes = "one box" if count == 1 else f"{count} boxes"
@@ -102,6 +105,11 @@ def proof_sentences(portrait: Portrait) -> list[str]:
     if lost:
         sentences.append(f"The tables lack {_plural(lost, 'fixed point')} of the formula")
     return sentences
+
+
+def _beside_lines(count: int) -> str:
+    boxes = "one box" if count == 1 else f"{count} boxes"
+    return f"outside {boxes} along them there is no fixed point"
 
 
 def _all_there_is(count: int) -> str:

@@ -222,9 +222,16 @@ def draw_undecided(panel: Panel, portrait: Portrait) -> list[Entry]:
                 hatch="//////",
                 facecolor="none",
                 edgecolor=color,
-                linewidth=0.8,
+                linewidth=0.0 if portrait.completeness.still else 0.8,
                 zorder=8,
             )
         )
     patch = Patch(facecolor="none", edgecolor=color, hatch="//////", linewidth=0.8)
-    return [Entry("undecided: may hold fixed points", (patch,))] if boxes else []
+    return [Entry(undecided_label(portrait), (patch,))] if boxes else []
+
+
+def undecided_label(portrait: Portrait) -> str:
+    """What the legend says of boxes that hold no isolated fixed point that was proved."""
+    if portrait.completeness.still:
+        return "filled with fixed points"
+    return "undecided: may hold fixed points"

@@ -86,7 +86,8 @@ def draw_bifurcations(branches: Branches, style: Style = Style.SCREEN) -> Figure
     above = [line for line in (branches.about, held_text(branches.held)) if line]
     seen = (*branches.bifurcations, *branches.retypings)
     changes = [bifurcation_sentence(b, branches.unit) for b in seen]
-    text = heading(branches.name, above, [*changes, *branches.notes], WIDTH + LEGEND)
+    names = [*(axis.name for axis in branches.axes), *(held.name for held in branches.held)]
+    text = heading(branches.name, above, [*changes, *branches.notes], WIDTH + LEGEND, names)
     below = BELOW + LINE * len(text.below)
     with look(palette):
         figure = new_figure(LEFT + WIDTH + LEGEND, below + height + text.height + 0.1, palette)

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from runtime.program import Unit
-from specc.figures.areas import ALL, basin_entries, hatch, tint
+from specc.figures.areas import ALL, basin_entries, hatch, tint, undecided_label
 from specc.figures.axes_of_states import name_x, name_y
 from specc.figures.curves import CYCLE_DASHES, CYCLE_WIDTH, LEAP_DASHES
 from specc.figures.legend import Entry, Look, line_entry
@@ -42,12 +42,13 @@ def _phase_line(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: b
     name_x(axes, state)
     bare(axes)
     axes.set_ylabel(axis_label(rate_of(state.name), _per_second(state.unit)))
+    axes.yaxis.get_offset_text().set_horizontalalignment("right")
     axes.axhline(0.0, color=palette.ink, linewidth=0.8, zorder=2)
     axes.plot(nodes, rates, color=color, linewidth=1.8, zorder=3)
     basins = _basins(axes, portrait, palette, is_small=is_small)
     if not basins:
         axes.fill_between(nodes, 0.0, rates, color=color, alpha=0.08, linewidth=0.0, zorder=1)
-    _directions(axes, nodes, rates, palette)
+    moves = _directions(axes, nodes, rates, palette)
     closed = [entry for cycle in portrait.cycles for entry in _loop(axes, cycle, scale, palette)]
     points = _points(axes, portrait, palette, on_diagonal=False)
     goes: Look = {"marker": ">", "markersize": 5.0, "linewidth": 0.8, "color": palette.ink}
@@ -56,13 +57,13 @@ def _phase_line(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: b
         *closed,
         *_switching(axes, portrait, palette),
         line_entry(rate_of(state.name), color=color, linewidth=1.8),
-        line_entry("where it goes", **goes),
+        *([line_entry("where it goes", **goes)] if moves else []),
         *basins,
     ]
 
 
-def _directions(axes: Axes, nodes: Array, rates: Array, palette: Palette) -> None:
-    """An arrowhead in the middle of each stretch in which the rate keeps its sign."""
+def _directions(axes: Axes, nodes: Array, rates: Array, palette: Palette) -> bool:
+    """An arrowhead in the middle of each stretch in which the rate keeps its sign; if any does."""
     sign = np.sign(np.nan_to_num(rates))
     edges = np.flatnonzero(np.diff(np.concatenate([[0.0], sign, [0.0]])))
     for a, b in pairwise(edges):
@@ -70,6 +71,7 @@ def _directions(axes: Axes, nodes: Array, rates: Array, palette: Palette) -> Non
             middle = 0.5 * (nodes[a] + nodes[b - 1])
             shape = ">" if sign[a] > 0 else "<"
             axes.plot(middle, 0.0, shape, color=palette.ink, markersize=6.0, zorder=4)
+    return bool(np.any(sign))
 
 
 def _loop(axes: Axes, cycle: Cycle, scale: float, palette: Palette) -> list[Entry]:
@@ -189,7 +191,13 @@ def _basins(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: bool)
 
 
 def _undecided(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
-    scale = portrait.axes[0].unit.scale
+    (state,) = portrait.axes
+    scale = state.unit.scale
+    if portrait.completeness.still and portrait.every == 0.0:
+        rest: Look = {"color": palette.alarm, "linewidth": 5.0, "alpha": 0.4}
+        axes.plot([state.low / scale, state.high / scale], [0.0, 0.0], zorder=2.5, **rest)
+        axes.set_ylim(-1.0, 1.0)
+        return [line_entry(undecided_label(portrait), **rest)]
     look: Look = {
         "facecolor": "none",
         "edgecolor": palette.alarm,
@@ -200,7 +208,7 @@ def _undecided(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
         axes.axvspan(float(box.low[0]) / scale, float(box.high[0]) / scale, zorder=1, **look)
     if not portrait.completeness.undecided:
         return []
-    return [Entry("undecided: may hold fixed points", (Patch(**look),))]
+    return [Entry(undecided_label(portrait), (Patch(**look),))]
 
 
 def _per_second(unit: Unit) -> Unit:

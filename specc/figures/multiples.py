@@ -22,6 +22,7 @@ from specc.figures.paper import (
     axes_at,
     heading,
     held_text,
+    names_in,
     new_figure,
     panel_size,
     write_heading,
@@ -58,7 +59,7 @@ def draw_multiples(
     fixed = tuple(h for h in first.held if h.name != swept)
     above = [line for line in (first.about, held_text(fixed)) if line]
     notes = list(dict.fromkeys(note for p in portraits for note in p.notes))
-    text = heading(first.name, above, notes, width + LEGEND)
+    text = heading(first.name, above, notes, width + LEGEND, names_in(first))
     below = BELOW + LINE * len(text.below)
     with look(palette):
         figure = new_figure(LEFT + width + LEGEND, below + height + text.height + 0.1, palette)

@@ -1,6 +1,8 @@
 """Where things stand on a figure, in inches: panels, the head above them, small print below."""
 
+import re
 import textwrap
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -10,7 +12,7 @@ from matplotlib.figure import Figure
 from specc.figures.legend import Look
 from specc.figures.palettes import Palette
 from specc.figures.quantities import quantity
-from verifier.topology.features import AxisRange, Held
+from verifier.topology.features import AxisRange, Held, Portrait
 
 LEFT: Final = 0.8
 """For ticks and the axis' name."""
@@ -45,10 +47,30 @@ class Heading:
         return TITLE + LINE * len(self.above) + 0.1
 
 
-def heading(title: str, above: list[str], below: list[str], width: float) -> Heading:
-    """The lines wrapped to `width` inches; at most three lines are kept of each sentence."""
-    small = [line[:1].upper() + line[1:] for line in below]
+def heading(
+    title: str, above: list[str], below: list[str], width: float, names: Collection[str] = ()
+) -> Heading:
+    """The lines wrapped to `width` inches; at most three lines are kept of each sentence.
+
+    names: of states and controls; a sentence that begins with one is not made to begin large.
+    """
+    small = [_begun(line, names) for line in below]
     return Heading(_spaced(title), _wrapped(above, width), _wrapped(small, width))
+
+
+def _begun(line: str, names: Collection[str]) -> str:
+    """A sentence with its first letter large, if no name begins with it.
+
+    >>> _begun("x does not move", ["x"]), _begun("there is one cycle", ["x"])
+    ('x does not move', 'There is one cycle')
+    """
+    first = re.match(r"\w*", line)
+    return line if first and first.group() in names else line[:1].upper() + line[1:]
+
+
+def names_in(portrait: Portrait) -> tuple[str, ...]:
+    """All names of states and controls that a sentence on a portrait may begin with."""
+    return (*(axis.name for axis in portrait.axes), *(held.name for held in portrait.held))
 
 
 def new_figure(width: float, height: float, palette: Palette) -> Figure:

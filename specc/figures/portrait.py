@@ -19,6 +19,7 @@ from specc.figures.paper import (
     axes_at,
     heading,
     held_text,
+    names_in,
     new_figure,
     panel_size,
     write_heading,
@@ -47,7 +48,7 @@ def draw_portrait(portrait: Portrait, style: Style = Style.SCREEN) -> Figure:
     about = [portrait.about] if portrait.about else []
     held = [held_text(portrait.held)] if portrait.held else []
     small = [*proof_sentences(portrait), *portrait.notes]
-    text = heading(portrait.name, [*about, *held], small, size[0] + LEGEND)
+    text = heading(portrait.name, [*about, *held], small, size[0] + LEGEND, names_in(portrait))
     frame = 0.1 if len(portrait.axes) == 3 else BELOW
     below = frame + LINE * len(text.below)
     with look(palette):

@@ -114,13 +114,15 @@ class Completeness:
     complete: every zero is in the list, and nothing is undecided. undecided: boxes that may hold
     zeros (degenerate ones, curves of them); they cover every zero that is not proved.
     lost: zeros (k, m) of the formula that the tables lack. about: what the proof speaks of, "the
-    tables" or "the formula"; empty where nothing was proved.
+    tables" or "the formula"; empty where nothing was proved. still: names of axes along which
+    nothing moves, so that the undecided boxes are filled with fixed points.
     """
 
     complete: bool
     undecided: tuple[UndecidedBox, ...]
     lost: Array
     about: str
+    still: tuple[str, ...] = ()
 
 
 @final

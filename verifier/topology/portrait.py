@@ -26,6 +26,7 @@ from verifier.topology.paths.orbits import find_orbits
 from verifier.topology.paths.trajectories import find_trajectories
 from verifier.topology.slices import Slice, SliceError, cut, rates_at
 from verifier.topology.zeros.fixed_points import find_fixed_points
+from verifier.topology.zeros.stillness import told_of_stillness, without_rounding
 
 
 @final
@@ -114,7 +115,12 @@ def _assembled(program: Program, view: Slice, grid: Grid, detail: Detail) -> Por
         basins=find_basins(view, points, cycles, detail.basins),
         switching=(),
         trajectories=_trajectories(view, grid, detail, points, separatrices),
-        notes=(*remarks, *hints, *_notes(program, view, grid)),
+        notes=(
+            *remarks,
+            *hints,
+            *told_of_stillness(view, completeness),
+            *_held_ones(program, view),
+        ),
     )
 
 
@@ -145,7 +151,7 @@ def _sampled(view: Slice, detail: Detail) -> Grid:
     count = (detail.line, detail.plane, detail.solid)[len(view.axes) - 1]
     nodes = tuple(frozen(np.linspace(axis.low, axis.high, count)) for axis in view.axes)
     points = np.stack(np.meshgrid(*nodes, indexing="ij"), axis=-1)
-    return Grid(nodes, frozen(rates_at(view, points)))
+    return Grid(nodes, frozen(without_rounding(view, rates_at(view, points))))
 
 
 def _thinned(grid: Grid, stride: int) -> Grid:
@@ -154,13 +160,8 @@ def _thinned(grid: Grid, stride: int) -> Grid:
     return Grid(nodes, frozen(grid.rates[(every,) * len(nodes)]))
 
 
-def _notes(program: Program, view: Slice, grid: Grid) -> tuple[str, ...]:
-    """What a reader of the portrait must know beside the numbers."""
-    names = [axis.name for axis in view.axes]
-    still = [name for j, name in enumerate(names) if not np.nanmax(np.abs(grid.rates[..., j]))]
-    notes = [f"{name} does not move by itself here, so no point is isolated" for name in still]
-    kept = {*names, program.field.mode}
+def _held_ones(program: Program, view: Slice) -> tuple[str, ...]:
+    """A note on what moves in the behavior, but not here."""
+    kept = {*(axis.name for axis in view.axes), program.field.mode}
     others = [state.name for state in program.states if state.is_driven and state.name not in kept]
-    if others:
-        notes.append(f"held although the behavior drives it: {', '.join(others)}")
-    return tuple(notes)
+    return (f"held although the behavior drives it: {', '.join(others)}",) if others else ()

@@ -37,6 +37,7 @@ def as_json(portrait: Portrait) -> dict[str, object]:
         "map": portrait.every > 0.0,
         "complete": portrait.completeness.complete,
         "proof_of": portrait.completeness.about or None,
+        "still": list(portrait.completeness.still),
         "fixed_points": [_fixed_point(axes, point) for point in portrait.fixed_points],
         "undecided": [
             {"low": _named(axes, box.low), "high": _named(axes, box.high)}

@@ -141,8 +141,16 @@ def drifts_at(view: Slice, points: Array) -> Array:
 
 
 def _changes(view: Slice, flow: Flow, points: Array) -> Array:
+    return _of_all(view, flow, states_at(view, points))
+
+
+def all_rates_at(view: Slice, x: Array) -> Array:
+    """Rates (..., n) of all states of the whole behavior at whole states `x`; displacements."""
+    return _of_all(view, view.whole, x)
+
+
+def _of_all(view: Slice, flow: Flow, x: Array) -> Array:
     """Rates (..., n) of all states, or how far one step moves them, the short way round."""
-    x = states_at(view, points)
     if not view.is_map:
         return rates(flow, x, view.u)
     change = next_states(flow, x, view.u) - x

@@ -35,6 +35,7 @@ from verifier.topology.hybrid.flow import (
 from verifier.topology.paths.seeds import spread
 from verifier.topology.slices import cut, rates_at, wrapped
 from verifier.topology.zeros.fixed_points import find_fixed_points
+from verifier.topology.zeros.stillness import without_rounding
 
 FIELD_OF: Final = "the field is that of"
 OF_ALL: Final = "fixed points and cycles are those of all modes"
@@ -117,7 +118,7 @@ def _in_mode(hybrid: Hybrid, mode: int, grid: Grid, *, cycles: bool, compared: b
     held = {each.name: each.value for each in hybrid.view.held} | {whole.field.mode: float(mode)}
     view = cut(whole, tuple(axis.name for axis in hybrid.view.axes), held)
     places = np.stack(np.meshgrid(*grid.nodes, indexing="ij"), axis=-1)
-    on_grid = Grid(grid.nodes, rates_at(view, places))
+    on_grid = Grid(grid.nodes, without_rounding(view, rates_at(view, places)))
     points, completeness, _ = find_fixed_points(view, on_grid, compare=compared)
     closed = find_cycles(view, points)[0] if cycles else ()
     return _kept(hybrid, mode, (points, closed, completeness))
@@ -157,6 +158,7 @@ def _together(each: list[Completeness]) -> Completeness:
         undecided=tuple(box for one in each for box in one.undecided),
         lost=frozen(np.concatenate([one.lost for one in each])),
         about=abouts.pop() if len(abouts) == 1 else "",
+        still=tuple(name for name in each[0].still if all(name in one.still for one in each)),
     )
 
 

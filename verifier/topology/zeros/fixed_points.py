@@ -8,7 +8,7 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.arrays import Array, frozen
+from runtime.arrays import Array, Booleans, frozen
 from runtime.flow import Source
 from verifier.topology.features import (
     Completeness,
@@ -23,6 +23,7 @@ from verifier.topology.zeros.classification import classified, eigenvalue_doubt,
 from verifier.topology.zeros.newton import largest_rates, near_misses, zeros_in
 from verifier.topology.zeros.proof import Proof, prove
 from verifier.topology.zeros.standings import compared
+from verifier.topology.zeros.stillness import still_axes
 
 CROWD: Final = 12
 """More degenerate points than these are samples of a curve or an area of fixed points."""
@@ -53,7 +54,9 @@ def find_fixed_points(
     where the tables are so near to zero that their error leaves it open.
     compare: whether zeros of tables are held against those of the formula.
     """
-    scale = largest_rates(grid)
+    scale, still = largest_rates(grid), still_axes(grid)
+    if np.any(still):
+        return (), _of_still(view, still), ()
     if not np.all(scale > 0.0):
         return (), _nothing_known(view), ()
     # The largest rate as a share of the domain; of a map, which has no time, 1.
@@ -70,8 +73,18 @@ def find_fixed_points(
     return ordered, Completeness(proof.complete, proof.undecided, lost, proof.about), notes
 
 
+def _of_still(view: Slice, still: Booleans) -> Completeness:
+    """Of a field that does not move along some axes: where it moves along none."""
+    names = tuple(axis.name for axis, is_still in zip(view.axes, still, strict=True) if is_still)
+    if np.all(still):
+        return replace(_nothing_known(view), still=names)
+    proof = prove(view, still=still)
+    nothing = frozen(np.empty((0, len(view.axes))))
+    return Completeness(proof.complete, proof.undecided, nothing, proof.about, names)
+
+
 def _nothing_known(view: Slice) -> Completeness:
-    """Of a field that does not move along an axis: any point may be a zero."""
+    """Of a field without values, or that never moves: any point may be a zero."""
     everywhere = UndecidedBox(frozen(view.low), frozen(view.low + view.width))
     nothing = frozen(np.empty((0, len(view.axes))))
     return Completeness(complete=False, undecided=(everywhere,), lost=nothing, about="")

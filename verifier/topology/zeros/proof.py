@@ -85,12 +85,14 @@ def prove(
     controls: Array | None = None,
     source: Source = Source.TABLES,
     smallest: float = SMALLEST,
+    still: Booleans | None = None,
 ) -> Proof:
     """Every zero of the slice's field, with proof, or the boxes in which that was not possible.
 
     controls: (2, p) lowest and highest values; without them those of the slice. For an interval of
     controls "a zero" is one zero for each value of the controls, all of them within its radius.
-    smallest: boxes of this share of the domain are not halved any more.
+    smallest: boxes of this share of the domain are not halved any more. still: axes (m,) along
+    which nothing moves: their rates are taken as zero, and no zero is isolated.
 
     Raises:
         ValueError: the field has no formula, and `source` asks for it.
@@ -98,7 +100,8 @@ def prove(
     box = np.stack([view.u, view.u]) if controls is None else np.asarray(controls)
     names = tuple(axis.name for axis in view.axes)
     field = enclosure_of(view.program, names, view.x, box, source)
-    search = _searched(view, field, smallest)
+    moving = np.ones(len(names), dtype=np.bool_) if still is None else ~still
+    search = _searched(view, field, smallest, moving)
     formula = source is Source.FORMULA or not view.program.field.tables
     return _reported(view, search, "the formula" if formula else "the tables")
 
@@ -106,7 +109,10 @@ def prove(
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Search:
-    """A search under way: boxes low to high (B, m) that are still open, and what is done."""
+    """A search under way: boxes low to high (B, m) that are still open, and what is done.
+
+    moving: the axes (m,) whose rates may exclude a box.
+    """
 
     field: Enclosure
     width: Array
@@ -116,14 +122,15 @@ class _Search:
     regions: Regions
     stuck: tuple[tuple[Array, Array], ...]
     work: int
+    moving: Booleans
 
 
-def _searched(view: Slice, field: Enclosure, smallest: float) -> _Search:
+def _searched(view: Slice, field: Enclosure, smallest: float, moving: Booleans) -> _Search:
     low, high = _start(view, field)
     m = low.shape[1]
     nothing = np.empty((0, m))
     none = Regions(nothing, nothing, nothing, nothing)
-    search = _Search(field, view.width, smallest, low, high, none, (), 0)
+    search = _Search(field, view.width, smallest, low, high, none, (), 0, moving)
     search = _without_far_ones(search)
     before, grown = len(search.low), 0
     while len(search.low):
@@ -170,7 +177,7 @@ def _without_far_ones(search: _Search) -> _Search:
     """The search without the boxes that coarse bounds exclude."""
     if not search.field.blocks:
         return search
-    open_ = _may_be_zero(changes(search.field, search.low, search.high, coarse=True))
+    open_ = _may_be_open(search, changes(search.field, search.low, search.high, coarse=True))
     return replace(search, low=search.low[open_], high=search.high[open_])
 
 
@@ -178,11 +185,16 @@ def _may_be_zero(values: Interval) -> Booleans:
     return np.asarray(np.all((values.low <= 0.0) & (values.high >= 0.0), axis=-1))
 
 
+def _may_be_open(search: _Search, values: Interval) -> Booleans:
+    """Which boxes the rates along the axes that move do not exclude."""
+    return _may_be_zero(Interval(values.low[:, search.moving], values.high[:, search.moving]))
+
+
 def _round(search: _Search) -> _Search:
     """Drop boxes, prove zeros near the others, and halve what is left."""
     field = search.field
     low, high = search.low, search.high
-    open_ = _may_be_zero(changes(field, low, high))
+    open_ = _may_be_open(search, changes(field, low, high))
     work = search.work + len(low) * field.work
     low, high = low[open_], high[open_]
     if not len(low):
@@ -191,7 +203,11 @@ def _round(search: _Search) -> _Search:
     centre = 0.5 * (low + high)
     radius = np.nextafter(np.maximum(high - centre, centre - low), np.inf)
     at_centre = changes(field, centre, centre)
-    open_ = _may_be_zero(mean_value(at_centre, J, radius))
+    open_ = _may_be_open(search, mean_value(at_centre, J, radius))
+    if not np.all(search.moving):
+        work += len(open_) * field.work * (2 + low.shape[1])
+        search = replace(search, low=low[open_], high=high[open_], work=work)
+        return _halved(search, Interval(J.low[open_], J.high[open_]))
     found = krawczyk(centre, radius, at_centre, J, inverses_of(J))
     low, high = narrowed(found, low, high)
     open_ &= np.all(low <= high, axis=-1)
