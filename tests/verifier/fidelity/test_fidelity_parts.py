@@ -18,7 +18,8 @@ CHANCE = 0.025
 
 def errors(mean: np.ndarray, moved: np.ndarray | None = None) -> Errors:
     nothing = np.zeros(len(mean))
-    return Errors(mean, mean, nothing, nothing if moved is None else moved, nothing)
+    went = nothing if moved is None else moved
+    return Errors(mean, mean, nothing, nothing, nothing, went, nothing)
 
 
 @given(st.integers(0, 10_000), st.integers(16, 300), st.integers(1, 4))

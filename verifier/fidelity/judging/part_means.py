@@ -122,6 +122,12 @@ def part_means(
     )
 
 
+def blur_of(errors: Errors) -> float:
+    """The noise in how far a variable was predicted to move: that of the start, at both ends."""
+    carried, unsure = (float(np.sqrt(np.mean(v))) for v in (errors.carried, errors.unsure))
+    return carried + unsure
+
+
 def clusters_of(residual: Array) -> Integers:
     """The cluster (W,) of each window, 0, 1, ...: long enough for these residuals."""
     least = CLUSTER_HORIZONS * WINDOWS_PER_HORIZON
@@ -182,13 +188,13 @@ def _plain(errors: Errors, part: Part, clusters: Integers) -> _Group:
 def _manners(errors: Errors, clusters: Integers, tolerance: float) -> _Group:
     """The means of short and of long moves, speeding up and slowing down, wherever they were."""
     columns, manners = [np.ones(len(errors.mean))], []
-    carried = float(np.sqrt(np.mean(errors.variance)))
+    blur = blur_of(errors)
     room = len(np.unique(clusters)) // CLUSTERS_PER_COLUMN - 1
     for which, values in enumerate((errors.moved, errors.hurried)):
         design = np.column_stack(columns)
         rest = values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
         spread = float(np.std(rest))
-        if spread <= max(ALIKE * tolerance, carried / MOSTLY) or _leans(rest, clusters):
+        if spread <= max(ALIKE * tolerance, blur / MOSTLY) or _leans(rest, clusters):
             continue
         if len(columns) > room:
             break

@@ -17,7 +17,7 @@ import numpy as np
 from runtime.arrays import Array
 from verifier.fidelity.judging.conditional_mean import conditional_means
 from verifier.fidelity.judging.departure import CONFIDENCE
-from verifier.fidelity.judging.part_means import MOSTLY, PartMeans, part_means
+from verifier.fidelity.judging.part_means import MOSTLY, PartMeans, blur_of, part_means
 from verifier.fidelity.judging.parts import Condition
 from verifier.fidelity.judging.structure import shown_structure
 from verifier.fidelity.shooting.shooting import Errors
@@ -57,7 +57,7 @@ def judge_errors(
     parts = part_means(errors, conditions, tolerance, ERROR / 2.0)
     situation, blur = _situation(errors, conditions)
     foretold = shown_structure(errors.mean, situation, parts.clusters, ERROR / 2.0)
-    carried = float(np.sqrt(np.mean(errors.variance)))
+    carried = float(np.sqrt(np.mean(errors.carried)))
     systematic = max(parts.shown - carried * blur, foretold - carried * blur, 0.0)
     ones = np.ones((len(errors.mean), 1))
     mean = conditional_means(errors.mean, ones, parts.clusters, np.ones((1, 1)))
@@ -75,13 +75,13 @@ def judge_errors(
 def _situation(errors: Errors, conditions: tuple[Condition, ...]) -> tuple[Array, float]:
     """What an error may depend on (W, d), and how blurred by noise it is.
 
-    Where the window ran, and how it was to move; what is mostly noise is left out. The same noise
-    is in the situation and, carried to the horizon, in the error, so that one foretells a little
-    of the other: by no more than the carried noise times the `blur` (Cauchy and Schwarz), the
-    root of the sum of squares of each quantity's noise over its spread.
+    Where the window ran, and how it was to move; what is mostly noise is left out. The noise of
+    the start is in the situation and, carried to the horizon, in the error, so that one foretells
+    a little of the other: by no more than the carried noise times the `blur` (Cauchy and Schwarz),
+    the root of the sum of squares of each quantity's noise over its spread.
     """
-    carried = float(np.sqrt(np.mean(errors.variance)))
-    quantities = [(errors.moved, carried), (errors.hurried, carried)]
+    blur = blur_of(errors)
+    quantities = [(errors.moved, blur), (errors.hurried, blur)]
     for each in conditions:
         if each.turn > 0.0:
             angle, noise = 2.0 * np.pi * each.values / each.turn, 2.0 * np.pi / each.turn
@@ -91,5 +91,5 @@ def _situation(errors: Errors, conditions: tuple[Condition, ...]) -> tuple[Array
     shares = [noise / max(float(np.std(values)), 1e-300) for values, noise in quantities]
     clear = [k for k, share in enumerate(shares) if share < MOSTLY]
     kept = [quantities[k][0] for k in clear]
-    blur = float(np.sqrt(sum(shares[k] ** 2 for k in clear)))
-    return (np.stack(kept, axis=-1) if kept else np.zeros((len(errors.mean), 0))), blur
+    total = float(np.sqrt(sum(shares[k] ** 2 for k in clear)))
+    return (np.stack(kept, axis=-1) if kept else np.zeros((len(errors.mean), 0))), total

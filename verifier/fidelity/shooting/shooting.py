@@ -9,7 +9,7 @@ Letters: W windows, n states, D predicted states, m samples in a span, Phi (D, D
 to the start, P (D, D) the covariance of the start estimate.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import final
 
 import numpy as np
@@ -40,22 +40,24 @@ class Errors:
     """Errors of one variable after one horizon, per window (W,); NaN where there is none.
 
     plain: measured minus predicted of the one sample nearest to the horizon. mean: averaged over
-    the span around it. variance: of `mean`, from measurement noise. moved: how far the variable
-    was predicted to move. hurried: how much farther it would have moved had its inputs come a
-    twentieth of the horizon earlier; without inputs that change, by how much it was predicted to
-    move farther in the last twentieth of the horizon than in the first.
+    the span around it. variance: of `mean`, from measurement noise; `carried` is the part of it
+    that came by way of the start, which is itself known with the variance `unsure`. moved: how
+    far the variable was predicted to move. hurried: how much farther it would have moved had its
+    inputs come a twentieth of the horizon earlier; without inputs that change, by how much it was
+    predicted to move farther in the last twentieth of the horizon than in the first.
     """
 
     plain: Array
     mean: Array
     variance: Array
+    carried: Array
+    unsure: Array
     moved: Array
     hurried: Array
 
     def part(self, part: Booleans) -> "Errors":
         """Of some of the windows (W,)."""
-        own = self.plain, self.mean, self.variance, self.moved, self.hurried
-        return Errors(*(values[part] for values in own))
+        return Errors(*(getattr(self, each.name)[part] for each in fields(self)))
 
 
 @final
@@ -96,13 +98,8 @@ def shoot(plan: Plan, noise: tuple[Noise, ...]) -> Shots:
 
 
 def _joined(parts: list[Errors]) -> Errors:
-    return Errors(
-        np.concatenate([p.plain for p in parts]),
-        np.concatenate([p.mean for p in parts]),
-        np.concatenate([p.variance for p in parts]),
-        np.concatenate([p.moved for p in parts]),
-        np.concatenate([p.hurried for p in parts]),
-    )
+    names = [each.name for each in fields(Errors)]
+    return Errors(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def _shoot(plan: Plan, noise: tuple[Noise, ...]) -> Shots:
@@ -229,6 +226,8 @@ def _errors(
         plain=residual[rows, one] + absent,
         mean=np.sum(residual * share, axis=1) + absent,
         variance=averaged(noise[j], count) + of_start + absent,
+        carried=of_start + absent,
+        unsure=fit.covariance[:, j, j] + absent,
         moved=at[0][rows, one] - _at_start(plan, paths, j) + absent,
         hurried=_hurried(plan, paths[0, ..., j], early if early is None else early[..., j], horizon)
         + absent,
