@@ -19,7 +19,10 @@ from specc.fitting.pooling import pooled
 from verifier.diagnosis.vectors import DrawnField, fitted_vectors
 from verifier.report.report import Verdict
 
-ROUNDS: Final = 2
+SENTENCE: Final = (
+    "of all fields that predict the recording as well, this one moves the drawn vectors least"
+)
+ROUNDS: Final = 3
 """So often the vectors are fitted: each time about the field that the last one left."""
 
 
@@ -84,7 +87,8 @@ def _aim(
     path = shares.paths[vector][column]
     unit = next(state.unit for state in program.states if state.name == name)
     text = rate_text(unit.text)
-    return Aim(path, dotted(path), value, half, text, unit.scale, f"the rate of {name} there")
+    shown = dotted(path).removeprefix("$.field.")
+    return Aim(path, shown, value, half, text, unit.scale, SENTENCE)
 
 
 def _stays(is_told: Booleans) -> tuple[str, ...]:

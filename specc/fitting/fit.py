@@ -100,19 +100,16 @@ def _aims(case: Case, tell: Tell) -> Aims:
 
 
 def _with_vectors(case: _Fit, loaded: Loaded, logs: Logs, tell: Tell) -> _Fit:
-    """A drawn field can follow what no single number stands for: nothing is beyond its vectors."""
+    """A drawn field can follow what no single number stands for.
+
+    Numbers that were fitted beside what its vectors explain are left alone.
+    """
     if all(each.report.verdict is Verdict.PASS for each in case.cases):
         return case
-    cases = case.cases
-    if case.moves:
-        loaded, program = compiled(moved(case.source, case.moves))
-        cases = logs.judged(program, tell)
-    found = redrawn(loaded, cases, logs, tell)
+    found = redrawn(loaded, case.cases, logs, tell)
     if found is None or not found.moves:
         return case
-    return replace(
-        case, moves=(*case.moves, *found.moves), stays=found.stays, told=Aims(case.told.aims)
-    )
+    return replace(case, moves=found.moves, stays=found.stays, told=Aims(()))
 
 
 def _ended(case: _Fit, logs: Logs, tell: Tell, *, anyway: bool) -> Fitted:

@@ -1,11 +1,15 @@
 """A fit as text for people, and as a record for programs."""
 
+from typing import Final
+
 from specc.fitting.fitted import Fitted, Outcome
 from specc.fitting.moves import Move
 from verifier.report.layout import section, table, wrapped
 from verifier.report.report import Report
 
-OPENINGS = {
+MOST: Final = 12
+"""So many moves are listed; the diff shows all."""
+OPENINGS: Final = {
     Outcome.MOVED: "moved",
     Outcome.NOTHING_TO_MOVE: "nothing is to be moved",
     Outcome.STRUCTURE_DIFFERS: "nothing is edited: the structure differs",
@@ -79,7 +83,11 @@ def _verdicts(fitted: Fitted) -> list[tuple[str, ...]]:
 
 
 def _moves(moves: tuple[Move, ...]) -> list[tuple[str, ...]]:
-    return [(move.name, move.old or "(none)", f"-> {move.new}", move.place) for move in moves]
+    rows: list[tuple[str, ...]] = [
+        (m.name, m.old or "(none)", f"-> {m.new}", m.place) for m in moves[:MOST]
+    ]
+    more = len(moves) - MOST
+    return [*rows, (f"and {more} more", "", "", "")] if more > 0 else rows
 
 
 def _reasons(fitted: Fitted) -> tuple[str, ...]:

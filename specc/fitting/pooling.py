@@ -35,7 +35,8 @@ def _mean(found: Sequence[Aim]) -> Aim:
         return (exact or found)[0]
     weights = [aim.half**-2.0 for aim in found]
     value = sum(w * aim.value for w, aim in zip(weights, found, strict=True)) / sum(weights)
-    return replace(found[0], value=value, half=sum(weights) ** -0.5)
+    said = "; ".join(dict.fromkeys(aim.sentence for aim in found))
+    return replace(found[0], value=value, half=sum(weights) ** -0.5, sentence=said)
 
 
 def _is_contradiction(found: Sequence[AnyAim]) -> bool:

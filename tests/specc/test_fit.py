@@ -1,0 +1,315 @@
+"""`specc.fit`: numbers move to what the robot does, in the user's text, and nothing else does."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import specc
+from spec_schema.diagnostics import SpecError
+from spec_schema.source import Source
+from specc.fitting.aims import Aim, Aims
+from specc.fitting.compiling import compiled
+from specc.fitting.fitted import BOM, Outcome
+from specc.fitting.moves import moved
+from specc.fitting.own_text import own_text
+from specc.fitting.pooling import pooled
+from specc.fitting.rounding import rounded
+from tests.specc.fit_scenes import (
+    SPECS,
+    TOLD,
+    drawn,
+    other_whirl,
+    patrol,
+    patrolled,
+    whirled,
+    written,
+)
+from verifier.report.report import Verdict
+
+
+def changed_lines(before: str, after: str) -> list[tuple[str, str]]:
+    pairs = zip(before.split("\n"), after.split("\n"), strict=True)
+    return [pair for pair in pairs if pair[0] != pair[1]]
+
+
+def test_a_slower_robot_moves_one_number_in_one_line(tmp_path: Path) -> None:
+    spec, run = patrol(tmp_path), patrolled(tmp_path / "run.csv", 0.46)
+    before = spec.read_text()
+
+    found = specc.fit(run, spec)
+
+    assert found.outcome is Outcome.MOVED
+    [(old, new)] = changed_lines(before, found.edited.text)
+    assert old == "  v1: {unit: m/s, domain: [0.1, 0.8], default: 0.5, about: speed forward}"
+    number = re.fullmatch(r"  v1: .* default: (\S+), about: speed forward}", new)
+    assert number is not None
+    assert float(number[1]) == pytest.approx(0.46, abs=0.002)
+    assert found.diff.count("\n-") == found.diff.count("\n+") - 1 == 1
+    assert spec.read_text() == before, "nothing is written before `write`"
+
+
+@pytest.fixture(scope="module")
+def slower(tmp_path_factory: pytest.TempPathFactory) -> specc.Fitted:
+    """The fit to a robot that is slower than commanded."""
+    folder = tmp_path_factory.mktemp("slower")
+    return specc.fit(patrolled(folder / "run.csv", 0.46), patrol(folder, TOLD))
+
+
+def test_a_constant_of_the_log_is_moved_where_it_stands_and_the_verdict_clears(
+    slower: specc.Fitted,
+) -> None:
+    [(old, new)] = changed_lines(slower.source.text, slower.edited.text)
+
+    assert old == "  v1: {constant: 0.5}  # as commanded"
+    assert new == "  v1: {constant: 0.46}  # as commanded"
+    assert [report.verdict for report in slower.before] == [Verdict.FAIL]
+    assert [report.verdict for report in slower.after] == [Verdict.PASS]
+
+
+def test_writing_replaces_the_file_and_keeps_its_line_ends_and_mark(
+    slower: specc.Fitted, tmp_path: Path
+) -> None:
+    spec = tmp_path / "patrol.yaml"
+    text = slower.source.text.replace("\n", "\r\n")
+    spec.write_bytes(BOM + text.encode())
+    source = Source(str(spec), text)
+
+    replace(slower, source=source, edited=moved(source, slower.moves)).write()
+
+    old, new = b"  v1: {constant: 0.5}", b"  v1: {constant: 0.46}"
+    assert spec.read_bytes() == BOM + text.encode().replace(old, new)
+
+
+def test_a_spec_that_was_changed_meanwhile_is_not_written(
+    slower: specc.Fitted, tmp_path: Path
+) -> None:
+    spec = tmp_path / "patrol.yaml"
+    spec.write_text(slower.source.text + "# a new thought\n", encoding="utf-8")
+
+    with pytest.raises(SpecError) as caught:
+        replace(slower, source=Source(str(spec), slower.source.text)).write()
+
+    [said] = caught.value.diagnostics
+    assert (said.code, said.message) == (
+        "V374",
+        "the spec was changed while it was fitted, so nothing is written",
+    )
+    assert spec.read_text().endswith("# a new thought\n")
+
+
+def test_a_faithful_robot_moves_nothing(tmp_path: Path) -> None:
+    spec, run = patrol(tmp_path, TOLD), patrolled(tmp_path / "run.csv", 0.5)
+
+    found = specc.fit(run, spec)
+
+    assert found.outcome is Outcome.NOTHING_TO_MOVE
+    assert (found.moves, found.diff, found.after) == ((), "", ())
+
+
+def test_runs_that_agree_are_pooled(tmp_path: Path) -> None:
+    spec = patrol(tmp_path, TOLD)
+    runs = [patrolled(tmp_path / f"{i}.csv", 0.46, 40.0, i) for i in (1, 2)]
+
+    found = specc.fit(runs, spec)
+
+    [move] = found.moves
+    assert float(move.new) == pytest.approx(0.46, abs=0.002)
+    assert Verdict.FAIL not in {report.verdict for report in found.after}
+
+
+def test_runs_that_contradict_one_another_leave_a_choice() -> None:
+    one = Aim(("control", "v1", "default"), "v1", 0.46, 0.01, "m/s", 1.0, "")
+    near, far = replace(one, value=0.47), replace(one, value=0.55)
+
+    assert not pooled([Aims((one,)), Aims((near,))]).choices
+    [said] = pooled([Aims((one,)), Aims((far,)), Aims(())]).choices
+    assert said == "v1: the recordings contradict one another: 0.46 and 0.55"
+
+
+def test_pooled_values_are_weighted_by_how_exactly_they_are_known() -> None:
+    rough = Aim(("control", "v1", "default"), "v1", 0.4, 0.02, "m/s", 1.0, "")
+    exact = replace(rough, value=0.41, half=0.01)
+
+    [found] = pooled([Aims((rough,)), Aims((exact,))]).aims
+
+    assert isinstance(found, Aim)
+    assert found.value == pytest.approx((0.4 + 4 * 0.41) / 5)
+    assert found.half == pytest.approx(0.02 / 5**0.5)
+
+
+@given(
+    st.floats(-1e4, 1e4),
+    st.floats(1e-6, 1e3),
+)
+def test_rounding_moves_a_value_by_no_more_than_a_quarter_of_its_doubt(
+    value: float, half: float
+) -> None:
+    text = rounded(value, half)
+
+    assert abs(float(text) - value) <= 0.26 * half + 1e-12 * abs(value)
+    assert text == rounded(float(text), half), "rounding twice is rounding once"
+    assert text != "-0"
+
+
+def test_digits_beyond_the_doubt_are_dropped() -> None:
+    assert [rounded(v, h) for v, h in ((0.45967, 0.01), (0.5, 0.3), (2.0004, 0.02), (-1, 0))] == [
+        "0.46", "0.5", "2", "-1",
+    ]  # fmt: skip
+
+
+SLIDE = """specc: 1
+kind: behavior
+name: slide
+state:
+  x: {{unit: "1", domain: [-40, 40], role: both, relates: {{agent: base, environment: hall}}}}
+control:
+  speed: {{unit: 1/s, domain: [-1, 1], default: 0}}
+field: {{formula: {{x: {rate}}}}}
+fidelity: {{tolerance: {{x: 0.02}}, horizon: 1 s}}
+trace:
+  x: x
+{speed}
+"""
+
+
+def slid(path: Path, late: float = 0.0) -> Path:
+    """A cart on a rail, pushed to and fro; its speed is logged `late` seconds late."""
+    rng = np.random.default_rng(5)
+    times = np.arange(0.0, 60.0, 0.02)
+
+    def speed(at: np.ndarray) -> np.ndarray:
+        return np.where(np.sin(0.9 * at) + np.sin(0.41 * at) > 0.0, 0.7, -0.3)
+
+    x = np.concatenate([[0.0], np.cumsum(speed(times))[:-1]]) * 0.02
+    x = x + 0.003 * rng.normal(size=x.shape)
+    return written(path, {"t": times, "x": x, "speed": speed(times - late)})
+
+
+def test_a_late_log_turns_a_bare_path_into_a_mapping_with_a_delay(tmp_path: Path) -> None:
+    spec = tmp_path / "slide.yaml"
+    spec.write_text(SLIDE.format(rate="speed", speed="  speed: speed  # command"))
+
+    found = specc.fit(slid(tmp_path / "run.csv", late=0.3), spec)
+
+    [(old, new)] = changed_lines(found.source.text, found.edited.text)
+    assert old == "  speed: speed  # command"
+    number = re.fullmatch(r"  speed: {path: speed, delay: (\S+) s}  # command", new)
+    assert number is not None
+    assert float(number[1]) == pytest.approx(0.3, abs=0.03)
+    assert found.after[0].verdict is Verdict.PASS
+
+
+def test_a_gain_of_an_input_becomes_its_scale(tmp_path: Path) -> None:
+    spec = tmp_path / "slide.yaml"
+    entry = "  speed:\n    path: speed  # command\n    scale: 0.5"
+    spec.write_text(SLIDE.format(rate="speed", speed=entry))
+
+    found = specc.fit(slid(tmp_path / "run.csv"), spec)
+
+    [(old, new)] = changed_lines(found.source.text, found.edited.text)
+    assert old == "    scale: 0.5"
+    assert float(new.removeprefix("    scale: ")) == pytest.approx(1.0, abs=0.02)
+
+
+def test_where_the_structure_differs_nothing_is_edited(tmp_path: Path) -> None:
+    spec = tmp_path / "hold.yaml"
+    rate = "speed * (1 + 0.4*sin(2*x))"
+    spec.write_text(SLIDE.format(rate=rate, speed="  speed: speed"))
+
+    found = specc.fit(slid(tmp_path / "run.csv"), spec)
+
+    assert found.outcome is Outcome.STRUCTURE_DIFFERS
+    assert found.edited == found.source
+    assert found.beyond or found.left
+
+
+def test_numbers_that_make_no_spec_are_refused(slower: specc.Fitted) -> None:
+    text = slower.edited.text.replace("v1: {constant: 0.46}", "v1: {constant: 0.9}")
+
+    with pytest.raises(SpecError) as caught:
+        compiled(replace(slower.source, text=text))
+
+    [said] = caught.value.diagnostics
+    assert said.code == "V373"
+    assert said.message == (
+        "with the robot's numbers the spec can't be compiled: 0.9 is outside the domain [0.1, 0.8]"
+    )
+
+
+def test_a_number_over_several_lines_is_not_moved(slower: specc.Fitted) -> None:
+    text = slower.source.text.replace("v1: {constant: 0.5}", "v1:\n    constant: >-\n      0.5 m/s")
+    source = replace(slower.source, text=text)
+
+    with pytest.raises(SpecError) as caught:
+        moved(source, slower.moves)
+
+    [said] = caught.value.diagnostics
+    assert (said.code, said.message) == (
+        "V372",
+        "v1 can't be moved: it does not begin with a number",
+    )
+
+
+def test_the_husky_without_its_delays_gets_them_back(tmp_path: Path) -> None:
+    text = (SPECS / "husky_drive.yaml").read_text(encoding="utf-8")
+    bare = re.sub(r"\{path: (\S+), delay: \S+ s\}", r"\1", text)
+    spec = tmp_path / "husky_drive.yaml"
+    spec.write_text(bare, encoding="utf-8")
+
+    found = specc.fit(SPECS / "recordings" / "husky" / "husky.mcap", spec)
+
+    delayed = re.compile(r"^  (\w+): {path: \S+, delay: (\S+) s}$", re.MULTILINE)
+    delays = dict(delayed.findall(found.edited.text))
+    assert delays.keys() == {"speed", "turn"}
+    assert float(delays["speed"]) == pytest.approx(0.5, abs=0.06)
+    assert float(delays["turn"]) == pytest.approx(0.1, abs=0.05)
+    assert len(changed_lines(bare, found.edited.text)) == 2
+    assert found.after[0].verdict is Verdict.PASS
+
+
+@pytest.mark.parametrize("form", ["arrows", "grid"])
+def test_a_drawn_field_moves_to_what_the_robot_does(tmp_path: Path, form: str) -> None:
+    spec, run = drawn(tmp_path, form), whirled(tmp_path / "run.csv", other_whirl)
+
+    found = specc.fit(run, spec)
+
+    assert found.outcome is Outcome.MOVED
+    assert [report.verdict for report in found.before] == [Verdict.FAIL]
+    assert [report.verdict for report in found.after] != [Verdict.FAIL]
+    [stays] = found.stays
+    assert "stay as they are" in stays
+    outside = re.compile(r"-?\d+\.\d+|-?\b\d\b(?=[,\]])")
+    assert outside.sub("#", found.edited.text) == outside.sub("#", found.source.text)
+    edited = tmp_path / "edited.yaml"
+    edited.write_text(found.edited.text)
+    program = specc.load_program(edited)
+    for angle in np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False):
+        x, y = 0.6 * np.cos(angle), 0.6 * np.sin(angle)
+        rates = rates_at(program, x, y)
+        assert rates == pytest.approx(other_whirl(x, y), abs=0.02)
+
+
+def rates_at(program: specc.Program, x: float, y: float) -> np.ndarray:
+    """By a short run."""
+    step = 0.01
+    run = specc.simulate(program, {"x": float(x), "y": float(y)}, step, every=step)
+    return (run.states[-1] - run.states[0]) / step
+
+
+def test_an_artifact_of_another_text_is_not_edited(tmp_path: Path) -> None:
+    spec = patrol(tmp_path, TOLD)
+    program = specc.load_program(spec)
+    assert own_text(program).source.name == str(spec)
+
+    spec.write_text(spec.read_text() + "# later\n")
+
+    with pytest.raises(SpecError) as caught:
+        own_text(program)
+    [said] = caught.value.diagnostics
+    assert said.code == "V371"
+    assert said.help == f"name the text to edit: --spec {spec}"
