@@ -94,12 +94,14 @@ def _grid(needs: Needs, times: Array) -> Grid:
 
 
 def _within(inputs: Array, needs: Needs) -> Array:
-    """Inputs (G, k) clipped to their domains: what rounding put beyond stays usable.
+    """Inputs (G, k or more) clipped to their domains: what rounding put beyond stays usable.
 
-    Where a measured input is truly outside, `segments` has excluded the time.
+    Where a measured input is truly outside, `segments` has excluded the time. Columns beyond those
+    of `needs` (rates that a diagnosis puts in) have no domain.
     """
-    low = np.array([each.low for each in needs.inputs])
-    high = np.array([each.high for each in needs.inputs])
+    more = np.full(inputs.shape[1] - len(needs.inputs), np.inf)
+    low = np.array([*(each.low for each in needs.inputs), *-more])
+    high = np.array([*(each.high for each in needs.inputs), *more])
     return np.clip(inputs, low, high)
 
 
