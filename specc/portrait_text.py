@@ -17,6 +17,7 @@ from verifier.topology.features import (
 )
 from verifier.topology.names import attractor_names, cycle_names, place, point_name
 from verifier.topology.portrait_json import as_json
+from verifier.topology.words import share_words
 
 
 def summary(found: Found) -> str:
@@ -172,18 +173,15 @@ def _separatrix(branch: Separatrix, portrait: Portrait) -> str:
 
 def _basins(basins: Basins, portrait: Portrait) -> list[str]:
     rows = [
-        f"{_share(attractor.share)} of the domain goes to the {name}"
+        f"{share_words(attractor.share, attractor.within)} of the domain goes to the {name}"
         for attractor, name in zip(basins.attractors, attractor_names(portrait), strict=True)
     ]
     if basins.leaves > 0.0:
-        rows.append(f"{_share(basins.leaves)} of the domain leaves it")
+        rows.append(f"{share_words(basins.leaves, basins.leaves_within)} of the domain leaves it")
     if basins.open > 0.0:
-        rows.append(f"{_share(basins.open)} of the domain was not followed to an end")
+        off = share_words(basins.open, basins.open_within)
+        rows.append(f"{off} of the domain was not followed to an end")
     return rows
-
-
-def _share(share: float) -> str:
-    return f"{100.0 * share:.1f} %"
 
 
 def _complex(value: complex) -> str:

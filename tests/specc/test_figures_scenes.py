@@ -225,6 +225,7 @@ def test_json_carries_proofs_cycles_separatrices_and_basins_in_own_units() -> No
         "index": 0,
         "name": "cycle of period 3 s",
         "share": 0.425,
+        "within": 0.0,
     }
     assert record["switching"][0]["to"] == "back"
 

@@ -197,11 +197,15 @@ class Separatrix:
 @final
 @dataclass(frozen=True, slots=True)
 class Attractor:
-    """An attractor of the portrait: `is_cycle` and `index` say which; `share` of its basin."""
+    """An attractor of the portrait: `is_cycle` and `index` say which; `share` of its basin.
+
+    within: how far the share may be off, as a share: half of the cells along the basin's border.
+    """
 
     is_cycle: bool
     index: int
     share: float
+    within: float = 0.0
 
 
 @final
@@ -210,7 +214,8 @@ class Basins:
     """Which attractor each place goes to.
 
     centres: per axis, of the cells. labels: (n1, ..., nm) index into `attractors`, -1 where the
-    domain is left, -2 where it was not followed to an end. leaves, open: shares of those two.
+    domain is left, -2 where it was not followed to an end. leaves, open: shares of those two, and
+    how far these may be off.
     """
 
     centres: tuple[Array, ...]
@@ -218,6 +223,8 @@ class Basins:
     attractors: tuple[Attractor, ...]
     leaves: float
     open: float
+    leaves_within: float = 0.0
+    open_within: float = 0.0
 
 
 @final

@@ -121,11 +121,14 @@ def _basins(portrait: Portrait, basins: Basins) -> dict[str, object]:
                 "index": a.index,
                 "name": name,
                 "share": a.share,
+                "within": a.within,
             }
             for a, name in zip(basins.attractors, attractor_names(portrait), strict=True)
         ],
         "leaves": basins.leaves,
+        "leaves_within": basins.leaves_within,
         "open": basins.open,
+        "open_within": basins.open_within,
         "centres": {
             a.name: [_short(v / a.unit.scale) for v in centres]
             for a, centres in zip(portrait.axes, basins.centres, strict=True)

@@ -76,6 +76,19 @@ def value_words(part: State | Control, value: float) -> str:
     return f"{value / part.unit.scale + 0.0:.6g}{unit}"
 
 
+def share_words(share: float, within: float = 0.0) -> str:
+    """A share of the domain, with how far it may be off, both in per cent.
+
+    >>> share_words(0.867, 0.0123), share_words(1.0), share_words(0.9996, 0.00021)
+    ('86.7 ± 1.2 %', '100.0 %', '99.96 ± 0.02 %')
+    """
+    if within == 0.0:
+        return f"{100.0 * share:.1f} %"
+    decimals = 1 if within >= 0.0005 else 2
+    off = max(100.0 * within, 10.0**-decimals)
+    return f"{100.0 * share:.{decimals}f} ± {off:.{decimals}f} %"
+
+
 def shown(axis: AxisRange, value: float) -> str:
     """A value on an axis for people, in its unit."""
     text = "" if axis.unit.text == "1" else f" {axis.unit.text}"

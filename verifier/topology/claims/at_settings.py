@@ -8,10 +8,17 @@ import numpy as np
 
 from runtime.claim import Claim
 from verifier.topology.claims.members import CYCLES, POINTS, Fit, Member, members, named
+from verifier.topology.ends.shares import share_within
 from verifier.topology.features import Completeness, Portrait, Settings
 from verifier.topology.hybrid.cycles import CHATTERING
 from verifier.topology.scenes import Scenes
-from verifier.topology.words import described_cycle, described_point, listed_features, plural
+from verifier.topology.words import (
+    described_cycle,
+    described_point,
+    listed_features,
+    plural,
+    share_words,
+)
 
 BASIN: Final = "basin"
 
@@ -160,16 +167,15 @@ def _basin(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], settings: Set
         return Verdict(Outcome.FAILS, nothing, ())
     basins = seen.basins
     share = sum(a.share for a in basins.attractors if (a.is_cycle, a.index) in goal)
-    # A cell on the edge of a basin belongs to it or not: the share is known to about its edge.
-    room = 1.0 / max(len(centres) for centres in basins.centres)
-    room = 0.0 if share == 1.0 else min(room, 0.5 * (1.0 - share), 0.5 * share)
-    sentence = f"{100.0 * share:.1f} % of the domain goes to {name}"
+    reached = [k for k, a in enumerate(basins.attractors) if (a.is_cycle, a.index) in goal]
+    room = share_within(np.isin(basins.labels, reached))
+    sentence = f"{share_words(share, room)} of the domain goes to {name}"
     if wanted_share <= share - room or (wanted_share == 1.0 and share == 1.0):
         return Verdict(Outcome.HOLDS, sentence, ())
     failing = share + basins.open + room < wanted_share
     sentence += f", less than {100.0 * wanted_share:g} %" if failing else ", too close to tell"
     if basins.leaves >= 0.001:
-        sentence += f"; {100.0 * basins.leaves:.1f} % leaves the domain"
+        sentence += f"; {share_words(basins.leaves, basins.leaves_within)} leaves the domain"
     rest = [a for a in basins.attractors if (a.is_cycle, a.index) not in goal and a.share >= 0.001]
     for attractor in rest[:2]:
         where = (
@@ -177,7 +183,7 @@ def _basin(scenes: Scenes, claim: Claim, above: tuple[Claim, ...], settings: Set
             if attractor.is_cycle
             else described_point(seen.axes, seen.fixed_points[attractor.index])
         )
-        sentence += f"; {100.0 * attractor.share:.1f} % goes to the {where}"
+        sentence += f"; {share_words(attractor.share, attractor.within)} goes to the {where}"
     outcome = Outcome.FAILS if failing else Outcome.OPEN
     return Verdict(outcome, sentence, _elsewhere(seen, goal))
 

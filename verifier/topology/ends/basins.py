@@ -13,6 +13,7 @@ from runtime.arrays import Array, Booleans, Integers, frozen
 from runtime.integrators import ENDINGS, adaptive, fixed_steps
 from runtime.rollout import Ending
 from verifier.topology.ends.capture import STABLE, Trap, traps_of, tubes_of
+from verifier.topology.ends.shares import shares_within
 from verifier.topology.ends.tubes import Tube, gaps_to
 from verifier.topology.features import Attractor, Basins, Cycle, FixedPoint, PointKind
 from verifier.topology.paths.motion import pace
@@ -204,10 +205,17 @@ def _basins(goals: Sequence[Goal], centres: tuple[Array, ...], labels: Integers)
     number = np.full(len(goals) + 2, OPEN)
     number[kept] = np.arange(len(kept))
     number[LEAVES] = LEAVES
+    cells = number[labels].reshape([len(axis) for axis in centres])
+    *within, leaves_within, open_within = shares_within(cells, [*range(len(kept)), LEAVES, OPEN])
     return Basins(
         centres=centres,
-        labels=number[labels].reshape([len(axis) for axis in centres]),
-        attractors=tuple(Attractor(goals[k].is_cycle, goals[k].index, shares[k]) for k in kept),
+        labels=cells,
+        attractors=tuple(
+            Attractor(goals[k].is_cycle, goals[k].index, shares[k], off)
+            for k, off in zip(kept, within, strict=True)
+        ),
         leaves=float(np.mean(labels == LEAVES)),
         open=float(np.mean(labels == OPEN)),
+        leaves_within=leaves_within,
+        open_within=open_within,
     )

@@ -13,6 +13,7 @@ from runtime.integrators import ENDINGS
 from runtime.rollout import Ending
 from verifier.topology.ends.basins import LEAVES, MOST_CELLS, OPEN, centres_of
 from verifier.topology.ends.capture import STABLE
+from verifier.topology.ends.shares import shares_within
 from verifier.topology.features import Attractor, Basins, Cycle, FixedPoint
 from verifier.topology.hybrid.flow import Hybrid, followed, on_axes, points_in
 
@@ -69,16 +70,22 @@ def find_hybrid_basins(
     centres = centres_of(view, min(cells, MOST_CELLS[len(view.axes)]))
     starts = np.stack(np.meshgrid(*centres, indexing="ij"), axis=-1).reshape(-1, len(view.axes))
     labels = _labelled(hybrid, goals, starts)
+    cells_of = labels.reshape([len(axis) for axis in centres])
+    *within, leaves_within, open_within = shares_within(
+        cells_of, [*range(len(goals)), LEAVES, OPEN]
+    )
     share = [float(np.mean(labels == k)) for k in range(len(goals))]
     return Basins(
         centres=centres,
-        labels=labels.reshape([len(axis) for axis in centres]),
+        labels=cells_of,
         attractors=tuple(
-            Attractor(goal.is_cycle, goal.index, part)
-            for goal, part in zip(goals, share, strict=True)
+            Attractor(goal.is_cycle, goal.index, part, off)
+            for goal, part, off in zip(goals, share, within, strict=True)
         ),
         leaves=float(np.mean(labels == LEAVES)),
         open=float(np.mean(labels == OPEN)),
+        leaves_within=leaves_within,
+        open_within=open_within,
     )
 
 
