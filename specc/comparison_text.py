@@ -9,7 +9,7 @@ from runtime.arrays import Array
 from spec_schema.wording import with_article
 from verifier.topology.comparing.comparison import Comparison, RateDifference
 from verifier.topology.comparing.matching import Fate, Feature
-from verifier.topology.features import AxisRange
+from verifier.topology.features import AxisRange, Held
 
 STYLES: Final = {True: "bold green", False: "bold red"}
 """Of the last word, by whether the behavior adheres."""
@@ -22,11 +22,45 @@ def comparison_text(comparison: Comparison) -> str:
     """What differs, one line each, the verdict last."""
     over = ", ".join(_range(axis) for axis in comparison.axes)
     rows = [f"{comparison.found} held against {comparison.wanted}, over {over}"]
+    rows += [f"  {line}" for line in taken_lines(comparison)]
     rows += [f"  {_rate(comparison, rate)}" for rate in comparison.rates]
     rows += [f"  {_feature(comparison, feature)}" for feature in comparison.features]
     if not comparison.features:
         rows.append("  neither has a fixed point or a cycle here")
     return "\n".join([*rows, verdict_text(comparison)])
+
+
+def taken_lines(comparison: Comparison) -> list[str]:
+    """At which values of controls and held states both were taken, and where these differ."""
+    taken = comparison.taken
+    same = [one for one in taken if one.found and one.wanted and not one.differs]
+    other = [one for one in taken if one.differs]
+    lines = []
+    if same:
+        lines.append(f"both at {', '.join(f'{one.name} = {_held(one.found)}' for one in same)}")
+    if other:
+        pairs = (f"{one.name} = {_held(one.found)} against {_held(one.wanted)}" for one in other)
+        lines.append(
+            f"at values that differ: {', '.join(pairs)}; `--set {other[0].name}=...` sets both"
+        )
+    for side, name in (("found", comparison.found), ("wanted", comparison.wanted)):
+        alone = [getattr(one, side) for one in taken if not (one.found and one.wanted)]
+        words = [f"{held.name} = {_held(held)}" for held in alone if held]
+        if words:
+            lines.append(f"only {name}: {', '.join(words)}")
+    return lines
+
+
+def _held(held: Held | None) -> str:
+    """A value that is held, in its own unit or by its name."""
+    if held is None:
+        return "nothing"
+    unit = "" if held.unit.text == "1" else f" {held.unit.text}"
+    return held.label or f"{held.value / held.unit.scale:.6g}{unit}"
+
+
+def _held_value(held: Held | None) -> float | str | None:
+    return None if held is None else held.label or float(f"{held.value / held.unit.scale:.15g}")
 
 
 def verdict_text(comparison: Comparison) -> str:
@@ -50,6 +84,15 @@ def comparison_record(comparison: Comparison) -> dict[str, object]:
         "adheres": comparison.adheres,
         "domain": {a.name: [a.low / a.unit.scale, a.high / a.unit.scale] for a in axes},
         "units": {axis.name: axis.unit.text for axis in axes},
+        "taken_at": {
+            one.name: {
+                "found": _held_value(one.found),
+                "wanted": _held_value(one.wanted),
+                "units": [held.unit.text if held else None for held in (one.found, one.wanted)],
+                "differs": one.differs,
+            }
+            for one in comparison.taken
+        },
         "tolerances": {
             "field": comparison.tolerances.field,
             "features": comparison.tolerances.features,

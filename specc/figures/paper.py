@@ -115,6 +115,8 @@ def panel_size(
 
 
 def _spaced(name: str) -> str:
+    if "." in name.split(maxsplit=1)[0]:
+        return name  # a file
     words = name.replace("_", " ")
     return words[:1].upper() + words[1:]
 

@@ -182,3 +182,90 @@ def test_a_map_is_not_held_against_a_flow() -> None:
 def as_flow(program: Program) -> Program:
     """The same expressions, taken for rates."""
     return replace(program, name="flow", field=replace(program.field, every=0.0, form="formula"))
+
+
+HEATED = """\
+specc: 1
+kind: behavior
+name: thermostat
+state:
+  T: {unit: K, domain: [283, 303], role: both, relates: {agent: heater, environment: room}}
+  heat:
+    kind: discrete
+    values: ["off", "on"]
+    role: both
+    relates: {agent: heater, environment: room}
+control:
+  aim: {unit: K, domain: [288, 298], default: 293}
+  band: {unit: K, domain: [0.1, 4], default: BAND}
+constants:
+  cold: {value: 285, unit: K}
+  hot: {value: 308, unit: K}
+  slow: {value: 300, unit: s}
+field:
+  modes:
+    of: heat
+    each:
+      "off": {formula: {T: (cold - T)/slow}, leave: [{when: T <= aim - band, to: "on"}]}
+      "on": {formula: {T: (hot - T)/slow}, leave: [{when: T >= aim + band, to: "off"}]}
+"""
+
+
+@pytest.fixture(scope="module")
+def thermostats(tmp_path_factory: pytest.TempPathFactory) -> tuple[Program, Program]:
+    """Two behaviors of one name in files of two names, with other defaults of one control."""
+    folder = tmp_path_factory.mktemp("heated")
+    for name, band in (("wide", "1.5"), ("narrow", "1")):
+        text = HEATED.replace("BAND", band)
+        (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+    return load_program(folder / "wide.yaml"), load_program(folder / "narrow.yaml")
+
+
+def test_the_values_that_both_were_taken_at_are_told_and_where_they_differ(
+    thermostats: tuple[Program, Program],
+) -> None:
+    comparison = compare_behaviors(*thermostats)
+    lines = comparison_text(comparison).splitlines()
+
+    assert lines[0].startswith("wide.yaml held against narrow.yaml, over T")
+    assert "  both at heat = off, aim = 293 K" in lines
+    assert any("at values that differ: band = 1.5 K against 1 K" in line for line in lines)
+    taken = comparison_record(comparison)["taken_at"]
+    assert isinstance(taken, dict)
+    assert taken["band"] == {"found": 1.5, "wanted": 1.0, "units": ["K", "K"], "differs": True}
+    assert taken["heat"]["found"] == "off"
+
+
+def test_values_given_to_both_do_not_differ(thermostats: tuple[Program, Program]) -> None:
+    comparison = compare_behaviors(*thermostats, held={"band": 2.0})
+
+    assert "differ" not in comparison_text(comparison)
+    assert comparison.adheres
+
+
+def test_over_one_axis_the_features_of_both_are_drawn(
+    thermostats: tuple[Program, Program],
+) -> None:
+    (axes,) = draw_difference(compare_behaviors(*thermostats)).axes
+    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "stable cycle: moved" in legend
+    reaches = [
+        (line.get_xdata()[0], line.get_xdata()[-1])
+        for line in axes.lines
+        if line.get_marker() == "|"
+    ]
+    assert reaches[0] == pytest.approx((291.5, 294.5), abs=1e-6)
+    assert reaches[1] == pytest.approx((292.0, 294.0), abs=1e-6)
+
+
+def test_the_borders_of_a_map_are_straight_where_the_difference_is_linear(tmp_path: Path) -> None:
+    wanted = program(tmp_path, "wanted", "-x", "-y")
+    code = program(tmp_path, "code", "-x + 0.1*(x + 0.37*y)", "-y")
+
+    (axes,) = draw_difference(compare_behaviors(code, wanted)).axes
+    levels = np.asarray(axes.images[0].get_array())
+    count = len(levels)
+    middles = -2.0 + 4.0 * (np.arange(count) + 0.5) / count
+    # The rate's difference equals what is allowed, 0.05 * 2, on the line x + 0.37 y = 1.
+    edges = [int(np.argmax(row[count // 2 :] >= 3)) + count // 2 for row in levels]
+    assert np.abs(middles[edges] - (1.0 - 0.37 * middles)).max() < 1.5 * 4.0 / count

@@ -4,7 +4,9 @@ The first one is what there is, such as code; the second one what is wanted, suc
 (thesis, section 3.2.2). m: number of axes; widths: of the part of the domains that both share.
 """
 
+import math
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import Final, final
 
 import numpy as np
@@ -12,7 +14,7 @@ import numpy as np
 from runtime.arrays import Array, frozen
 from runtime.program import Program
 from verifier.topology.comparing.matching import Fate, Feature, matched_features
-from verifier.topology.features import AxisRange, Portrait
+from verifier.topology.features import AxisRange, Held, Portrait
 from verifier.topology.slices import Slice, cut, rates_at, shortest
 
 PLACES: Final = {1: 2001, 2: 141, 3: 31}
@@ -63,12 +65,33 @@ class RateDifference:
 
 
 @final
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """At which value each side had a control or held state; None: it has no such."""
+
+    name: str
+    found: Held | None
+    wanted: Held | None
+
+    @property
+    def differs(self) -> bool:
+        """Whether both have it, at values that are not the same."""
+        if self.found is None or self.wanted is None:
+            return False
+        if self.found.label or self.wanted.label:
+            return self.found.label != self.wanted.label
+        ours, theirs = self.found.value, self.wanted.value
+        return not math.isclose(ours, theirs, rel_tol=1e-9, abs_tol=1e-12)
+
+
+@final
 @dataclass(frozen=True, eq=False, slots=True)
 class Comparison:
-    """What differs between `found` and `wanted`, names of behaviors, over `axes`.
+    """What differs between `found` and `wanted`, names of behaviors or files, over `axes`.
 
-    axes: what both domains share. worst: (n1, ..., nm) the largest difference of a rate in units
-    of what is allowed, on `nodes`; infinite where only one field has a value.
+    taken: the values that controls and held states had. axes: what both domains share. worst:
+    (n1, ..., nm) the largest difference of a rate in units of what is allowed, on `nodes`;
+    infinite where only one field has a value.
     """
 
     found: str
@@ -81,6 +104,7 @@ class Comparison:
     features: tuple[Feature, ...]
     nodes: tuple[Array, ...]
     worst: Array
+    taken: tuple[Taken, ...] = ()
 
     @property
     def adheres(self) -> bool:
@@ -102,9 +126,10 @@ def compare(found: Side, wanted: Side, tolerances: Tolerances) -> Comparison:
         ours = shortest(views[0], ours - theirs) + theirs
     allowed = _allowed(theirs, tolerances.field)
     share = _shares(ours, theirs, allowed)
+    names = _names(found.program, wanted.program)
     return Comparison(
-        found=found.program.name,
-        wanted=wanted.program.name,
+        found=names[0],
+        wanted=names[1],
         axes=axes,
         is_map=views[0].is_map,
         tolerances=tolerances,
@@ -118,6 +143,28 @@ def compare(found: Side, wanted: Side, tolerances: Tolerances) -> Comparison:
         ),
         nodes=nodes,
         worst=frozen(share.max(axis=-1)),
+        taken=_taken(found.portrait, wanted.portrait),
+    )
+
+
+def _names(found: Program, wanted: Program) -> tuple[str, str]:
+    """The names of the behaviors; of their files where the behaviors are called the same."""
+    files = [PurePath(program.source.file or program.name) for program in (found, wanted)]
+    for ours, theirs in (
+        (found.name, wanted.name),
+        (files[0].name, files[1].name),
+        (str(files[0]), str(files[1])),
+    ):
+        if ours != theirs:
+            return ours, theirs
+    return found.name, wanted.name
+
+
+def _taken(found: Portrait, wanted: Portrait) -> tuple[Taken, ...]:
+    """What either portrait holds still, by name, those of the found one first."""
+    ours, theirs = ({held.name: held for held in portrait.held} for portrait in (found, wanted))
+    return tuple(
+        Taken(name, ours.get(name), theirs.get(name)) for name in dict.fromkeys([*ours, *theirs])
     )
 
 
