@@ -43,13 +43,13 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
     of_rates = {each.name for each in moved if each.kind is ParameterKind.RATE_GAIN}
     found: list[AnyAim | str] = []
     by_hand: set[str] = set()
-    for each in (candidate for candidate in diagnosis.candidates if candidate.is_taken):
-        if each.kind in LATE:
-            found += delays(each, bindings)
-        elif each.kind in OF_LOGS and not of_rates & set(each.applies_to):
+    taken = [each for each in diagnosis.candidates if each.is_taken]
+    found += delays([each for each in taken if each.kind in LATE], bindings)
+    for each in taken:
+        if each.kind in OF_LOGS and not of_rates & set(each.applies_to):
             found.append(mended(each, program, bindings))
             by_hand.update(each.applies_to)
-        elif each.kind not in SCALARS + OF_LOGS:
+        elif each.kind not in SCALARS + OF_LOGS + LATE:
             found.append(each.sentence)
     names = dict.fromkeys(each.name for each in moved if each.kind in OF_INPUTS + OF_SENSORS)
     for name in names:

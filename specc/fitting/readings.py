@@ -1,6 +1,8 @@
 """How a log is to be read, as numbers of `trace:` entries: delays, scales, offsets and units."""
 
+import math
 import re
+from collections.abc import Sequence
 from typing import Final
 
 from runtime.program import Binding, Program
@@ -15,24 +17,27 @@ OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
 WRITTEN: Final = {"degrees": "deg", "radians": "rad", "millimetres": "mm", "metres": "m"}
 """Units by the word that a candidate's label begins with: what the log is in."""
 ANGLE_OR_LENGTH: Final = re.compile(r"\b(deg|rad|mm|m)\b")
-NEAR: Final = 0.02
+NEAR: Final = 0.1
+"""A factor within this share of that between two units is taken for it."""
 
 
-def delays(candidate: Candidate, bindings: dict[str, Binding]) -> list[Aim | str]:
-    """The entries of all that comes late together.
+def delays(late: Sequence[Candidate], bindings: dict[str, Binding]) -> list[Aim | str]:
+    """The entries of all that comes late, by one candidate or by several.
 
     A shift of what acts is the opposite of a delay of the log; it comes on top of the spec's own.
     """
-    (shift,) = candidate.numbers
-    half = 0.5 * (shift.interval.high - shift.interval.low)
     found: list[Aim | str] = []
-    for name in candidate.applies_to:
+    for name in dict.fromkeys(name for each in late for name in each.applies_to):
+        own = [each for each in late if name in each.applies_to]
+        said = "; ".join(each.sentence for each in own)
         if not _is_bound(name, bindings):
-            found.append(_unbound(candidate.sentence, name))
+            found.append(_unbound(said, name))
             continue
-        value = bindings[name].delay - shift.value
+        shifts = [each.numbers[0] for each in own]
+        value = bindings[name].delay - sum(shift.value for shift in shifts)
+        half = math.hypot(*(0.5 * (s.interval.high - s.interval.low) for s in shifts))
         path = ("trace", name, "delay")
-        found.append(Aim(path, f"delay of {name}", value, half, "s", 1.0, candidate.sentence))
+        found.append(Aim(path, f"delay of {name}", value, half, "s", 1.0, said))
     return found
 
 
@@ -82,7 +87,7 @@ def mended(candidate: Candidate, program: Program, bindings: dict[str, Binding])
         scale = parse_unit(text).scale
     except UnitFault:
         scale = 0.0
-    if abs(scale / (factor * binding.unit.scale) - 1.0) > NEAR + 0.1:
+    if abs(scale / (factor * binding.unit.scale) - 1.0) > NEAR:
         return f"{candidate.sentence}; write the unit of the log into 'trace: {name}:' by hand"
     return UnitAim(("trace", name, "unit"), f"unit of {name}", text, candidate.sentence)
 

@@ -83,7 +83,7 @@ def test_many_edits_do_not_disturb_one_another(numbers: list[str], more: st.Data
 def test_a_new_key_is_added_and_nothing_is_lost(text: str, number: str) -> None:
     found = change(text, NewKey(("t", "s", "delay"), f"{number} s", "path"))
 
-    entry = data(found)["t"]["s"]  # type: ignore[index,call-overload]
+    entry = data(found)["t"]["s"]  # type: ignore[index]
     assert entry == {"path": "/odom.x", "scale": 2, "delay": f"{number} s"}
     assert list(entry)[-1] == "delay"
     assert re.sub(r"(, | *)delay: \S+ s\n?", "", found).rstrip("\n") == text.rstrip("\n")
@@ -107,8 +107,8 @@ def test_a_bare_path_becomes_a_mapping(written: str, braced: str) -> None:
     found = change(text, *keys)
 
     assert found == f"trace:\n  v: {{path: {braced}, delay: 0.5 s, scale: 2}}  # late\n  w: /w.x\n"
-    before = data(text)["trace"]["v"]  # type: ignore[index,call-overload]
-    assert data(found)["trace"]["v"]["path"] == before  # type: ignore[index,call-overload]
+    before = data(text)["trace"]["v"]  # type: ignore[index]
+    assert data(found)["trace"]["v"]["path"] == before  # type: ignore[index]
 
 
 def test_a_text_is_changed_within_its_quotes() -> None:

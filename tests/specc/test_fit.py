@@ -298,7 +298,7 @@ def rates_at(program: specc.Program, x: float, y: float) -> np.ndarray:
     """By a short run."""
     step = 0.01
     run = specc.simulate(program, {"x": float(x), "y": float(y)}, step, every=step)
-    return (run.states[-1] - run.states[0]) / step
+    return np.asarray((run.states[-1] - run.states[0]) / step)
 
 
 def test_an_artifact_of_another_text_is_not_edited(tmp_path: Path) -> None:

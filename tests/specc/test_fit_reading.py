@@ -141,7 +141,8 @@ def test_a_late_log_adds_to_the_delay_that_the_spec_has() -> None:
     [aim] = aims_of(program(bound), diagnosis(late, told=Told.STRUCTURE_DIFFERS)).aims
 
     assert isinstance(aim, Aim)
-    assert (aim.path, aim.value) == (("trace", "v", "delay"), pytest.approx(0.4))
+    assert aim.path == ("trace", "v", "delay")
+    assert aim.value == pytest.approx(0.4)
 
 
 def test_a_clock_moves_all_that_it_stamps() -> None:
@@ -150,6 +151,18 @@ def test_a_clock_moves_all_that_it_stamps() -> None:
     told = aims_of(program(binding("v", METRE), binding("x", METRE)), diagnosis(both))
 
     assert [aim.path for aim in told.aims] == [("trace", "v", "delay"), ("trace", "x", "delay")]
+
+
+def test_a_late_log_and_a_clock_add_up() -> None:
+    clock = candidate(CandidateKind.CLOCK_OFFSET, "v", "x", value=-0.2)
+    late = candidate(CandidateKind.LATE_LOG, "v", value=-0.3)
+    both = program(binding("v", METRE), binding("x", METRE))
+
+    found = aims_of(both, diagnosis(clock, late)).aims
+
+    delays = {aim.path[1]: aim.value for aim in found if isinstance(aim, Aim)}
+    assert len(found) == 2
+    assert delays == pytest.approx({"v": 0.5, "x": 0.2})
 
 
 @pytest.mark.parametrize(
