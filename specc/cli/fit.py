@@ -1,7 +1,7 @@
 """`specc fit`: the spec moved to what the robot does."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,6 +10,9 @@ from specc.cli.options import Format, FormatOption
 from specc.cli.status import Status
 from specc.cli.verify import Clock
 from specc.cli.warming import warmed
+
+if TYPE_CHECKING:
+    from specc.fitting.fitted import Fitted
 
 
 def fit(
@@ -54,7 +57,6 @@ def fit(
 
     `specc fit run.mcap --format json`
     """
-    from specc.fitting import fit_text
     from specc.fitting.fit import fit as fitted_to
     from specc.fitting.fitted import Outcome
 
@@ -71,14 +73,20 @@ def fit(
     is_written = write and found.outcome is Outcome.MOVED
     if is_written:
         found.write()
-    if form is Format.JSON:
-        print_json(fit_text.fit_record(found, is_written=is_written))
-    else:
-        say(f"spec: {found.how}")
-        print_text(fit_text.fit_text(found))
-    if is_written:
-        say(f"wrote {found.path}", "bold")
-    elif found.outcome is Outcome.MOVED:
-        say(f"{found.path} is as it was; --write edits it", "bold")
+    _show(found, form, is_written=is_written)
     statuses = {Outcome.STRUCTURE_DIFFERS: Status.NO, Outcome.CANNOT_TELL: Status.INCONCLUSIVE}
     return statuses.get(found.outcome, Status.YES)
+
+
+def _show(found: "Fitted", form: Format, *, is_written: bool) -> None:
+    from specc.fitting.fit_text import fit_record, fit_text
+
+    if form is Format.JSON:
+        print_json(fit_record(found, is_written=is_written))
+    else:
+        say(f"spec: {found.how}")
+        print_text(fit_text(found))
+    if is_written:
+        say(f"wrote {found.path}", "bold")
+    elif found.diff:
+        say(f"{found.path} is as it was; --write edits it", "bold")
