@@ -103,7 +103,7 @@ def drawn(folder: Path, form: str) -> Path:
     return path
 
 
-def whirled(path: Path, rate: Rate, seconds: float = 40.0) -> Path:
+def whirled(path: Path, rate: Rate, seconds: float = 30.0) -> Path:
     """A log of a robot with these rates, integrated in steps of 1 ms, noisy, 20 Hz."""
     rng = np.random.default_rng(3)
     x, y, rows = 0.9, 0.1, []

@@ -180,12 +180,12 @@ trace:
 def slid(path: Path, late: float = 0.0) -> Path:
     """A cart on a rail, pushed to and fro; its speed is logged `late` seconds late."""
     rng = np.random.default_rng(5)
-    times = np.arange(0.0, 60.0, 0.02)
+    times = np.arange(0.0, 40.0, 0.04)
 
     def speed(at: np.ndarray) -> np.ndarray:
         return np.where(np.sin(0.9 * at) + np.sin(0.41 * at) > 0.0, 0.7, -0.3)
 
-    x = np.concatenate([[0.0], np.cumsum(speed(times))[:-1]]) * 0.02
+    x = np.concatenate([[0.0], np.cumsum(speed(times))[:-1]]) * 0.04
     x = x + 0.003 * rng.normal(size=x.shape)
     return written(path, {"t": times, "x": x, "speed": speed(times - late)})
 
