@@ -13,10 +13,10 @@ from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry
 from specc.figures.palettes import Palette
 from specc.figures.panel import Panel
-from verifier.topology.features import AxisRange, Basins, Portrait
+from verifier.topology.features import AxisRange, Portrait
 from verifier.topology.names import attractor_tags
 
-FINER: Final = 4
+FINER: Final = 12
 """Each cell of the basins is drawn as so many squared, its edge between the centres smoothed."""
 
 BLUR: Final = 0.8
@@ -40,32 +40,29 @@ CHIPS_ROOM: Final = 0.6
 RULED: Final = 2
 """The tint whose colour hatching has: darker than the grounds, lighter than the field."""
 
-PERIOD: Final = 6
+PERIOD: Final = 18
 """Of a hatching, in finer cells."""
+
+LINE: Final = 3
+"""The width of its lines, in finer cells."""
 
 HATCHES: Final[MappingProxyType[str, Callable[[Integers, Integers], Booleans]]] = MappingProxyType(
     {
         "": lambda i, _: i < 0,
-        "...": lambda i, j: (i % PERIOD == 0) & (j % PERIOD == 0),
-        "///": lambda i, j: (i - j) % PERIOD == 0,
-        "---": lambda _, j: j % PERIOD == 0,
-        "xxx": lambda i, j: ((i + j) % PERIOD == 0) | ((i - j) % PERIOD == 0),
-        "|||": lambda i, _: i % PERIOD == 0,
+        "...": lambda i, j: (i % PERIOD < LINE) & (j % PERIOD < LINE),
+        "///": lambda i, j: (i - j) % PERIOD < LINE,
+        "---": lambda _, j: j % PERIOD < LINE,
+        "xxx": lambda i, j: ((i + j) % PERIOD < LINE) | ((i - j) % PERIOD < LINE),
+        "|||": lambda i, _: i % PERIOD < LINE,
     }
 )
 """Which finer cells a hatching darkens; the names are matplotlib's."""
 
-ALL: Final = 0.9995
-"""Where one attractor has this share of the domain, a tint would tell nothing."""
-
 
 def draw_basins(panel: Panel, portrait: Portrait) -> list[Entry]:
-    """Each attractor's basin in a tint of its own; nothing where one has it all.
-
-    In a small panel that one is tinted, too: its neighbours may differ.
-    """
+    """Each attractor's basin in a tint of its own."""
     basins = portrait.basins
-    if basins is None or (_is_of_one(basins) and not panel.is_small):
+    if basins is None:
         return []
     x, y = panel.states
     present = [int(k) for k in np.unique(basins.labels)]
@@ -137,10 +134,6 @@ def draw_shares(panel: Panel, portrait: Portrait) -> None:
             bbox={"facecolor": ground, "edgecolor": palette.faint, "linewidth": 0.4, "pad": 1.8},
             annotation_clip=False,
         )
-
-
-def _is_of_one(basins: Basins) -> bool:
-    return max((a.share for a in basins.attractors), default=1.0) > ALL
 
 
 def share_text(share: float) -> str:

@@ -11,9 +11,10 @@ import numpy as np
 
 from runtime.arrays import Array, frozen
 from specc.figures.legend import Entry, Look, line_entry
+from specc.figures.palettes import Palette
 from specc.figures.panel import Panel, draw_heads, places_along
 from specc.figures.quantities import rate_of
-from verifier.topology.features import Cycle, Portrait, Stability
+from verifier.topology.features import Cycle, Portrait, Stability, Switching
 
 Dashes: TypeAlias = tuple[float, tuple[float, ...]] | Literal["-"]
 
@@ -45,6 +46,22 @@ CLEAR: Final = 0.7
 
 LEAP_DASHES: Final = (0.0, (0.9, 1.5))
 """Of what happens at once: the state jumps where the mode changes."""
+
+JUMP: Final = "jump"
+"""What the legend calls these."""
+
+GUARD_DASHES: Final[tuple[Dashes, ...]] = (
+    (0.0, (3.0, 0.6)),
+    (0.0, (1.0, 0.6)),
+    (0.0, (3.0, 0.6, 0.8, 0.6)),
+    (0.0, (6.0, 0.8)),
+)
+"""Of the lines at which modes are left, in widths of the line."""
+
+GUARD_ALPHA: Final = 0.55
+
+GUARD_WIDTH: Final = 3.6
+"""They are broad bands behind the curves, so that what runs or jumps along them is seen."""
 
 NOTHING: Final = frozen(np.empty((0, 2)))
 
@@ -98,7 +115,7 @@ def draw_trajectories(panel: Panel, portrait: Portrait) -> list[Entry]:
             panel.axes.plot(*points.T, markersize=2.2 * panel.weight, zorder=4, **look)
         return [line_entry("orbit", markersize=2.8, **look)]
     stroke, heads = Stroke(color, "-", 0.9), list[Array]()
-    leap = Stroke(color, LEAP_DASHES, 0.7)
+    leap, jumped = Stroke(color, LEAP_DASHES, 0.7), False
     heavy = [c.points for c in portrait.cycles] + [s.points for s in portrait.separatrices]
     clear_of = panel.inches(np.concatenate(heavy)) if heavy else np.empty((0, 2))
     for path in portrait.trajectories:
@@ -106,8 +123,10 @@ def draw_trajectories(panel: Panel, portrait: Portrait) -> list[Entry]:
         for piece in pieces:
             draw_path(panel, piece, stroke, 4.0, heads, clear_of)
         for points in leaps:
-            draw_path(panel, points, leap, 4.0, heads, clear_of)
-    return [line_entry("trajectory", **stroke.look)]
+            draw_path(panel, points, leap, 4.0, None)
+        jumped = jumped or bool(leaps)
+    jump = [line_entry(JUMP, **leap.look)] if jumped else []
+    return [line_entry("trajectory", **stroke.look), *jump]
 
 
 def draw_separatrices(panel: Panel, portrait: Portrait) -> list[Entry]:
@@ -128,7 +147,7 @@ def draw_separatrices(panel: Panel, portrait: Portrait) -> list[Entry]:
 def draw_cycles(panel: Panel, portrait: Portrait) -> list[Entry]:
     """Closed trajectories: stable solid, unstable dashed; of a map, the points of its orbits."""
     if portrait.every == 0.0:
-        return [_draw_cycle(panel, cycle) for cycle in portrait.cycles]
+        return [entry for cycle in portrait.cycles for entry in _draw_cycle(panel, cycle)]
     present = [s for s in Stability if any(c.stability is s for c in portrait.cycles)]
     return [
         _draw_orbits_of_map(panel, s, [c for c in portrait.cycles if c.stability is s])
@@ -136,7 +155,7 @@ def draw_cycles(panel: Panel, portrait: Portrait) -> list[Entry]:
     ]
 
 
-def _draw_cycle(panel: Panel, cycle: Cycle) -> Entry:
+def _draw_cycle(panel: Panel, cycle: Cycle) -> list[Entry]:
     width = NEUTRAL_WIDTH if cycle.stability is Stability.NEUTRAL else CYCLE_WIDTH
     stroke = Stroke(panel.palette.cycle, CYCLE_DASHES[cycle.stability], width)
     leap = Stroke(panel.palette.cycle, LEAP_DASHES, 0.8 * width)
@@ -144,9 +163,10 @@ def _draw_cycle(panel: Panel, cycle: Cycle) -> Entry:
     pieces, leaps = at_jumps(cycle.times, cycle.points)
     for piece in pieces:
         draw_path(panel, piece, stroke, 6.0, heads)
-    for jump in leaps:
-        draw_path(panel, jump, leap, 6.0, heads)
-    return line_entry(f"{cycle.stability} cycle", **stroke.look)
+    for points in leaps:
+        draw_path(panel, points, leap, 6.0, heads)
+    jump = [line_entry(JUMP, **leap.look)] if leaps else []
+    return [line_entry(f"{cycle.stability} cycle", **stroke.look), *jump]
 
 
 def _draw_orbits_of_map(panel: Panel, stability: Stability, cycles: list[Cycle]) -> Entry:
@@ -184,15 +204,30 @@ def draw_switching(panel: Panel, portrait: Portrait) -> list[Entry]:
     """Where the mode that is shown is left: lines of the guards."""
     entries = []
     for number, switching in enumerate(portrait.switching):
-        dashes = (0.0, (5.0, 1.2) if number % 2 == 0 else (2.0, 1.2))
-        stroke = Stroke(panel.palette.switch, dashes, 1.8)
+        stroke = guard_stroke(panel.palette, switching, number)
         for line in switching.lines:
             look = stroke.scaled(panel.weight).look
-            panel.axes.plot(*panel.shown(line).T, zorder=5.5, **look)
+            panel.axes.plot(*panel.shown(line).T, zorder=2.5, alpha=GUARD_ALPHA, **look)
         if switching.lines:
-            label = f"{switching.mode} switches to {switching.target}"
-            entries.append(line_entry(label, **stroke.look))
+            entries.append(guard_entry(switching, stroke))
     return entries
+
+
+def guard_stroke(palette: Palette, switching: Switching, number: int) -> Stroke:
+    """How a guard is drawn, the `number`-th of its mode: the way back looks different."""
+    which = 2 * number + (switching.mode > switching.target)
+    return Stroke(palette.switch, GUARD_DASHES[which % len(GUARD_DASHES)], GUARD_WIDTH)
+
+
+def guard_entry(switching: Switching, stroke: Stroke) -> Entry:
+    """What the legend says of a guard."""
+    itself = switching.mode == switching.target
+    way = (
+        f"{switching.mode} jumps here"
+        if itself
+        else f"{switching.mode} switches to {switching.target}"
+    )
+    return line_entry(way, alpha=GUARD_ALPHA, **stroke.look)
 
 
 def draw_path(
@@ -200,17 +235,20 @@ def draw_path(
     points: Array,
     stroke: Stroke,
     zorder: float,
-    heads: list[Array],
+    heads: list[Array] | None,
     clear_of: Array = NOTHING,
 ) -> None:
     """A path (T, 2) in the direction of time, cut at seams, with arrowheads along it.
 
     heads: where arrowheads of its kind stand already, in inches; new ones are added, and keep
-    away from them. clear_of: (k, 2) points of heavier curves that would hide them, in inches.
+    away from them; None: it gets none. clear_of: (k, 2) points of heavier curves that would
+    hide them, in inches.
     """
     places, directions = [], []
     for piece in panel.pieces(points):
         panel.axes.plot(*panel.shown(piece).T, zorder=zorder, **stroke.scaled(panel.weight).look)
+        if heads is None:
+            continue
         inches = panel.inches(piece)
         for k in places_along(inches, APART).tolist():
             direction = inches[k + 1] - inches[k - 1]

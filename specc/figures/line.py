@@ -9,11 +9,19 @@ from matplotlib.patches import Patch
 
 from runtime.arrays import Array
 from runtime.program import Unit
-from specc.figures.areas import ALL, basin_entries, hatch, tint, undecided_label
+from specc.figures.areas import basin_entries, hatch, tint, undecided_label
 from specc.figures.axes_of_states import name_x, name_y
-from specc.figures.curves import CYCLE_DASHES, CYCLE_WIDTH, LEAP_DASHES
+from specc.figures.curves import (
+    CYCLE_DASHES,
+    CYCLE_WIDTH,
+    GUARD_ALPHA,
+    JUMP,
+    LEAP_DASHES,
+    guard_entry,
+    guard_stroke,
+)
 from specc.figures.legend import Entry, Look, line_entry
-from specc.figures.markers import cross, mark, ring
+from specc.figures.markers import cross, mark, rest, ring
 from specc.figures.palettes import Palette
 from specc.figures.quantities import axis_label, rate_of
 from specc.figures.style import bare
@@ -51,6 +59,8 @@ def _phase_line(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: b
     moves = _directions(axes, nodes, rates, palette)
     closed = [entry for cycle in portrait.cycles for entry in _loop(axes, cycle, scale, palette)]
     points = _points(axes, portrait, palette, on_diagonal=False)
+    resting = np.array([place[0] / scale for place in portrait.rests])
+    points += rest(axes, _on_paper(resting, on_diagonal=False), palette)
     goes: Look = {"marker": ">", "markersize": 5.0, "linewidth": 0.8, "color": palette.ink}
     return [
         *points,
@@ -93,18 +103,21 @@ def _loop(axes: Axes, cycle: Cycle, scale: float, palette: Palette) -> list[Entr
     leap: Look = {"color": palette.cycle, "linewidth": 1.4, "linestyle": LEAP_DASHES}
     for before, after in zip(ends[1::2], [*ends[2::2], *ends[:1]], strict=True):
         axes.plot(*np.stack([before, after]).T, zorder=5, **leap)
-    return [line_entry(f"{cycle.stability} cycle", **look)] if ends else []
+    if not ends:
+        return []
+    return [line_entry(f"{cycle.stability} cycle", **look), line_entry(JUMP, **leap)]
 
 
 def _switching(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
     """Upright lines where the mode that is shown is left."""
     entries = []
-    for switching in portrait.switching:
-        look: Look = {"color": palette.switch, "linewidth": 1.6, "linestyle": (0.0, (5.0, 1.2))}
+    for number, switching in enumerate(portrait.switching):
+        stroke = guard_stroke(palette, switching, number)
+        look: Look = stroke.look | {"alpha": GUARD_ALPHA}
         for line in switching.lines:
-            axes.axvline(float(line[0, 0]) / portrait.axes[0].unit.scale, zorder=2.5, **look)
+            axes.axvline(float(line[0, 0]) / portrait.axes[0].unit.scale, zorder=1.5, **look)
         if switching.lines:
-            entries.append(line_entry(f"{switching.mode} switches to {switching.target}", **look))
+            entries.append(guard_entry(switching, stroke))
     return entries
 
 
@@ -166,11 +179,9 @@ def _on_paper(values: Array, *, on_diagonal: bool) -> Array:
 
 
 def _basins(axes: Axes, portrait: Portrait, palette: Palette, *, is_small: bool) -> list[Entry]:
-    """Tinted stretches of the state, one tint an attractor; a cycle's even if it has it all."""
+    """Tinted stretches of the state, one tint an attractor."""
     basins = portrait.basins
     if basins is None or not basins.attractors:
-        return []
-    if max(a.share for a in basins.attractors) > ALL and not portrait.cycles:
         return []
     (state,) = portrait.axes
     labels = basins.labels

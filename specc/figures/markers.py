@@ -102,6 +102,22 @@ def cross(axes: Axes, at: Array, palette: Palette, weight: float = 1.0) -> list[
     return [line_entry("of the formula, lost by the tables", **look)]
 
 
+def rest(axes: Axes, at: Array, palette: Palette, weight: float = 1.0) -> list[Entry]:
+    """Stars at the places `at` (k, 2) that trajectories come to that switch without end."""
+    look: Look = {
+        "linestyle": "none",
+        "marker": "*",
+        "markersize": 12.0 * weight,
+        "markerfacecolor": palette.ink,
+        "markeredgecolor": palette.paper,
+        "markeredgewidth": 0.8 * weight,
+    }
+    if not len(at):
+        return []
+    axes.plot(*at.T, clip_on=False, zorder=10, **look)
+    return [line_entry("rest: switches without end", **look)]
+
+
 def _entry(kind: PointKind, palette: Palette) -> Entry:
     first = Line2D([], [], linestyle="none", **marker(kind, palette))
     dot = Line2D([], [], linestyle="none", marker="o", color=palette.ink, markersize=DOT)

@@ -74,12 +74,17 @@ def draw_heads(
     """Arrowheads of a `size` in inches at `places` (k, 2), inches, along `directions` (k, 2)."""
     if not len(places):
         return
-    along = directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
-    across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
-    corners = HEAD[None, :, :1] * along[:, None] + HEAD[None, :, 1:] * across[:, None]
-    shapes = panel.from_inches(places[:, None] + size * corners)
+    pairs = zip(places, directions, strict=True)
+    shapes = panel.from_inches(np.stack([head_at(at, along, size) for at, along in pairs]))
     heads = PolyCollection(list(shapes), facecolors=colors, edgecolors="none", zorder=zorder)
     panel.axes.add_collection(heads, autolim=False)
+
+
+def head_at(place: Array, direction: Array, size: float) -> Array:
+    """The corners (4, 2) of an arrowhead of a `size` at a place (2,) along a direction (2,)."""
+    along = direction / np.hypot(*direction)
+    across = np.array([-along[1], along[0]])
+    return np.asarray(place + size * (HEAD[:, :1] * along + HEAD[:, 1:] * across))
 
 
 def places_along(path: Array, apart: float) -> Integers:

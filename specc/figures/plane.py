@@ -14,7 +14,7 @@ from specc.figures.curves import (
 )
 from specc.figures.field import draw_field, draw_steps
 from specc.figures.legend import Entry
-from specc.figures.markers import cross, mark, ring
+from specc.figures.markers import cross, mark, rest, ring
 from specc.figures.panel import Panel
 from verifier.topology.features import Portrait, Standing
 
@@ -70,6 +70,7 @@ def _draw_points(panel: Panel, portrait: Portrait) -> list[Entry]:
         *mark(panel.axes, at, [point.kind for point, _ in copies], palette, weight),
         *ring(panel.axes, at[invented], palette, weight),
         *cross(panel.axes, _stacked(panel, lost), palette, weight),
+        *rest(panel.axes, _stacked(panel, list(portrait.rests)), palette, weight),
     ]
 
 

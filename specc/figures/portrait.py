@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from specc.figures.axes_of_states import same_scale
-from specc.figures.camera import Camera
 from specc.figures.legend import draw_legend
 from specc.figures.line import draw_line
 from specc.figures.palettes import PALETTES
@@ -25,7 +24,7 @@ from specc.figures.paper import (
     write_heading,
 )
 from specc.figures.plane import draw_plane
-from specc.figures.space import MARGIN, draw_space
+from specc.figures.space import draw_space, size_of_space
 from specc.figures.style import look
 from specc.figures.style_names import Style
 from specc.portrait_text import proof_sentences
@@ -36,9 +35,6 @@ MOST: Final = (4.7, 4.3)
 
 FLAT: Final = (4.7, 2.9)
 """The same of a phase line."""
-
-SOLID: Final = 2.85
-"""Inches for a unit of a projected box."""
 
 
 def draw_portrait(portrait: Portrait, style: Style = Style.SCREEN) -> Figure:
@@ -78,5 +74,4 @@ def _size(portrait: Portrait) -> tuple[float, float]:
         case 2:
             return panel_size(portrait.axes, MOST, same_scale=same_scale(portrait.axes))
         case _:
-            width, height = (SOLID * (Camera().size + 2.0 * MARGIN)).tolist()
-            return width, height
+            return size_of_space()

@@ -5,7 +5,7 @@ from typing import Final, final
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
@@ -13,8 +13,9 @@ from runtime.arrays import Array
 from specc.figures.axes_of_states import split_at_seams
 from specc.figures.camera import CORNERS, Camera
 from specc.figures.legend import Entry, line_entry
-from specc.figures.markers import mark
+from specc.figures.markers import mark, rest
 from specc.figures.palettes import Palette
+from specc.figures.panel import head_at, places_along
 from specc.figures.quantities import axis_label, number
 from verifier.topology.features import AxisRange, Portrait
 
@@ -32,6 +33,21 @@ STEP: Final = 0.008
 
 MARGIN: Final = 0.14
 """For ticks and names around the projected box."""
+
+ABOVE: Final = 0.03
+"""For nothing, above it."""
+
+SOLID: Final = 2.85
+"""Inches for a unit of the projected box."""
+
+HEAD: Final = 0.1
+"""The length of an arrowhead on a thin curve, in inches."""
+
+APART: Final = 1.6
+"""How far apart arrowheads stand along a curve, in inches."""
+
+CLEAR: Final = 0.3
+"""How far an arrowhead stays from all others, in inches."""
 
 MANY: Final = 1500
 """More pieces than these are stored as an image within the drawing."""
@@ -55,12 +71,21 @@ def draw_space(axes: Axes, portrait: Portrait, palette: Palette) -> list[Entry]:
     _draw_box(axes, portrait.axes, camera, palette)
     curves, entries = _curves(portrait, palette)
     _draw_curves(axes, curves, camera, palette)
+    _draw_heads(axes, curves, camera, palette)
     at = np.array([p.at for p in portrait.fixed_points]).reshape(-1, 3)
     shares = _shares(portrait.axes, at)
     _draw_plumb_lines(axes, shares, camera, palette)
     places = camera.projected(shares)[:, :2]
     points = mark(axes, places, [p.kind for p in portrait.fixed_points], palette)
+    ends = _shares(portrait.axes, np.array(portrait.rests).reshape(-1, 3))
+    points += rest(axes, camera.projected(ends)[:, :2], palette)
     return [*points, *entries]
+
+
+def size_of_space() -> tuple[float, float]:
+    """Width and height of the drawing, in inches."""
+    width, height = Camera().size.tolist()
+    return SOLID * (width + 2.0 * MARGIN), SOLID * (height + MARGIN + ABOVE)
 
 
 def _shares(states: tuple[AxisRange, ...], points: Array) -> Array:
@@ -129,6 +154,25 @@ def _draw_curves(axes: Axes, curves: list[Curve], camera: Camera, palette: Palet
     )
 
 
+def _draw_heads(axes: Axes, curves: list[Curve], camera: Camera, palette: Palette) -> None:
+    """Arrowheads along all curves in the direction of time, in the colour of their depth."""
+    shapes, colors, taken = [], [], np.empty((0, 2))
+    for curve in curves:
+        places = camera.projected(curve.path)
+        inches = SOLID * places[:, :2]
+        for k in places_along(inches, APART).tolist():
+            along = inches[k + 1] - inches[k - 1]
+            gaps = np.hypot(*(taken - inches[k]).T)
+            if not np.any(along) or np.any(gaps < CLEAR):
+                continue
+            size = HEAD * (0.75 + 0.25 * curve.width)
+            shapes.append(head_at(inches[k], along, size) / SOLID)
+            colors.append(_faded(curve.color, float(places[k, 2]), palette))
+            taken = np.concatenate([taken, inches[k][None]])
+    heads = PolyCollection(shapes, facecolors=colors, edgecolors="none", zorder=4.1)
+    axes.add_collection(heads, autolim=False)
+
+
 def _faded(color: str, depth: float, palette: Palette) -> tuple[float, float, float]:
     """The colour of a piece at a depth between about -0.8 (far) and 0.8 (near)."""
     share = FADE * float(np.clip(0.5 - depth / 1.5, 0.0, 1.0))
@@ -149,7 +193,7 @@ def _draw_plumb_lines(axes: Axes, shares: Array, camera: Camera, palette: Palett
 def _draw_box(axes: Axes, states: tuple[AxisRange, ...], camera: Camera, palette: Palette) -> None:
     """The three faces at the back with their grid, and the ticks at the outer edges."""
     corners = camera.projected(CORNERS)[:, :2]
-    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + np.array([MARGIN, ABOVE])
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     back = np.where(camera.axes[2] > 0.0, 0.0, 1.0)

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import same_color
 from matplotlib.patches import Rectangle
 
+from runtime.arrays import frozen
 from specc.branches_text import branches_record, branches_summary
 from specc.drawn import picture_of
-from specc.figures.curves import at_jumps
+from specc.figures.curves import at_jumps, guard_stroke
 from specc.figures.palettes import PALETTES
 from specc.figures.portrait import draw_portrait
 from specc.figures.style import rendered
@@ -32,6 +34,7 @@ from verifier.topology.features import (
     Grid,
     Portrait,
     Stability,
+    Switching,
 )
 from verifier.topology.portrait_json import as_json
 
@@ -99,10 +102,56 @@ def test_an_undecided_box_is_hatched_where_it_is() -> None:
     assert box.get_y() + 0.5 * box.get_height() == pytest.approx(0.5)
 
 
-def test_one_attractor_that_has_everything_needs_no_tint() -> None:
-    alone = replace(basins(), attractors=(replace(basins().attractors[0], share=1.0),))
+def test_one_attractor_that_has_everything_is_tinted_and_named() -> None:
+    one = replace(basins().attractors[0], share=1.0)
+    alone = replace(basins(), attractors=(one,), labels=np.zeros_like(basins().labels), leaves=0.0)
+    portrait = replace(everything(), basins=alone)
 
-    assert not any("goes to" in label for label in labels(replace(everything(), basins=alone)))
+    assert [label for label in labels(portrait) if "goes to" in label] == [
+        "goes to (−1, 0): 100.0 %"
+    ]
+    assert len(draw_portrait(portrait).axes[0].images) == 1
+
+
+def test_the_edge_of_a_basin_shows_no_stairs() -> None:
+    cells = 48
+    centres = (np.arange(cells) + 0.5) / cells
+    x, v = np.meshgrid(centres, centres, indexing="ij")
+    tilted = np.where(x + 0.31 * v < 0.6, 0, 1)
+    halves = replace(basins(), labels=tilted, centres=(centres, centres))
+    (image,) = draw_portrait(replace(everything(), basins=halves)).axes[0].images
+    picture = np.asarray(image.get_array())[..., 2]
+    count = len(picture)
+    edge = np.array([np.flatnonzero(np.diff(row))[0] for row in picture]) + 1.0
+    wanted = (0.6 - 0.31 * (np.arange(count) + 0.5) / count) * count
+    inner = slice(count // 10, -count // 10)
+    # A twelfth of a cell is one pixel; the stairs of whole cells would be twelve pixels high.
+    assert np.abs(edge - wanted)[inner].max() < 0.35 * count / cells
+
+
+def test_the_way_back_has_a_guard_of_another_look_and_jumps_are_named() -> None:
+    there = Switching("forward", "back", (frozen([[0.01, -2.0], [0.01, 2.0]]),))
+    back = Switching("back", "forward", there.lines)
+    looks = [guard_stroke(PALETTES[Style.SCREEN], s, 0).dashes for s in (there, back)]
+    assert looks[0] != looks[1]
+
+    portrait = replace(everything(), cycles=(jumping(),), rests=(frozen([0.0, 0.0]),))
+    assert {"jump", "rest: switches without end"} < set(labels(portrait))
+    itself = replace(portrait, switching=(replace(there, target="forward"),))
+    assert "forward jumps here" in labels(itself)
+
+
+def test_what_runs_along_a_guard_is_drawn_over_it() -> None:
+    (axes,) = draw_portrait(everything()).axes
+    color = PALETTES[Style.SCREEN].switch
+    guards = [line.get_zorder() for line in axes.lines if line.get_color() == color]
+    paths = [
+        line.get_zorder()
+        for line in axes.lines
+        if line.get_color() in {PALETTES[Style.SCREEN].path, PALETTES[Style.SCREEN].cycle}
+    ]
+    assert guards
+    assert max(guards) < min(paths)
 
 
 def test_a_cycle_through_modes_jumps_where_time_stands_still() -> None:
@@ -255,3 +304,5 @@ def test_three_axes_are_drawn_as_a_box_with_named_edges() -> None:
     assert {"x [cm]", "v", "z [cm]", "−2", "2", "0"} <= texts
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert names == ["stable node", "saddle", "degenerate", "stable cycle", "unstable cycle"]
+    heads = [c for c in axes.collections if isinstance(c, PolyCollection)]
+    assert len(heads[0].get_paths()) >= 2

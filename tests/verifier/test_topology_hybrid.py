@@ -191,7 +191,7 @@ def test_a_cycle_beside_a_continuum_of_closed_ways_is_found() -> None:
     """Below 1/2 the jump leaves y as it is, above it leads towards 1."""
     jump = "y 0.5 gt y 1 sub 0.3 mul 1 add y where"
 
-    [cycle], [note] = find_hybrid_cycles(hybrid(carousel(jump)))
+    [cycle], [note], _ = find_hybrid_cycles(hybrid(carousel(jump)))
 
     assert cycle.points[:, 1] == pytest.approx(1.0, abs=1e-6)
     assert cycle.multipliers[0].real == pytest.approx(0.3)
@@ -242,7 +242,7 @@ def test_a_thermostat_swings_between_its_limits(low: float, high: float) -> None
 
 
 def test_switching_without_end_is_said_with_its_place() -> None:
-    found, [note] = find_hybrid_cycles(hybrid(thermostat(1.5, 1.5)))
+    found, [note], _ = find_hybrid_cycles(hybrid(thermostat(1.5, 1.5)))
 
     assert found == ()
     assert "chattering: 100 %" in note
@@ -250,10 +250,13 @@ def test_switching_without_end_is_said_with_its_place() -> None:
 
 
 def test_a_bouncing_ball_comes_to_rest_by_chattering() -> None:
-    found, notes = find_hybrid_cycles(hybrid(bouncing_ball(0.6)))
+    found, notes, rests = find_hybrid_cycles(hybrid(bouncing_ball(0.6)))
 
     assert found == ()
     assert any("switch without end of 'flight' (h = " in note for note in notes)
+    assert any("leave the domain" in note for note in notes)
+    [place] = rests
+    assert place == pytest.approx([0.0, 0.0], abs=1e-6)
 
 
 def test_a_zero_of_a_mode_that_is_left_before_is_no_fixed_point() -> None:

@@ -282,7 +282,7 @@ class Portrait:
 
     every: the seconds of a map's step, 0 for a flow. basins: None where nothing attracts, or where
     nobody asked. switching: the guards of the mode that is shown. notes: sentences on what the
-    numbers do not show.
+    numbers do not show. rests: places (m,) that trajectories come to that switch without end.
     """
 
     name: str
@@ -300,3 +300,4 @@ class Portrait:
     switching: tuple[Switching, ...]
     trajectories: tuple[Trajectory, ...]
     notes: tuple[str, ...]
+    rests: tuple[Array, ...] = ()

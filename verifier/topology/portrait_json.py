@@ -46,6 +46,7 @@ def as_json(portrait: Portrait) -> dict[str, object]:
         "lost": [_named(axes, zero) for zero in portrait.completeness.lost],
         "cycles": [_cycle(axes, cycle) for cycle in portrait.cycles],
         "separatrices": [_separatrix(axes, branch) for branch in portrait.separatrices],
+        "rests": [_named(axes, place) for place in portrait.rests],
         "basins": None if portrait.basins is None else _basins(portrait, portrait.basins),
         "switching": [
             {"from": s.mode, "to": s.target, "lines": [_points(axes, line) for line in s.lines]}

@@ -60,7 +60,7 @@ def ellipsoid_round(
     # NaN, outside the domain, fails as well.
     good = np.all(falls <= -DECAY * np.sum(e * e, axis=-1), axis=-1)
     count = len(good) if good.all() else int(np.argmin(good))
-    if count == 0:
+    if count == 0 or largest <= 0.0:
         return None
     size = largest * SHELLS[count - 1] ** 2
     return Ellipsoid(index, at, frozen(P / size))

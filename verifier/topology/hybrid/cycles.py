@@ -53,16 +53,22 @@ CONTINUUM: Final = (
 
 CHATTERING: Final = "chattering"
 """How a note on trajectories that switch without end begins."""
+ONE_PLACE: Final = 1e-3
+"""Trajectories that end this close to one another, in widths, come to rest in one place."""
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Lane:
-    """What became of a trajectory: its switches, the points (m,) after them, where it ended."""
+    """What became of a trajectory: its switches, the points (m,) after them, where it ended.
+
+    chatters, leaves: it ended as it switched without end, or left the domain.
+    """
 
     switches: Switches
     points: Array
     chatters: bool
+    leaves: bool
     end: Array
 
 
@@ -75,10 +81,15 @@ class Course:
     switches: Switches
 
 
-def find_hybrid_cycles(hybrid: Hybrid) -> tuple[tuple[Cycle, ...], tuple[str, ...]]:
-    """The cycles through switches, the shortest period first, and notes on what is not listed."""
+def find_hybrid_cycles(
+    hybrid: Hybrid,
+) -> tuple[tuple[Cycle, ...], tuple[str, ...], tuple[Array, ...]]:
+    """The cycles through switches, the shortest period first, and notes on what is not listed.
+
+    Third, the places (m,) that trajectories come to that switch without end.
+    """
     if not np.isfinite(hybrid.tempo):
-        return (), ()
+        return (), (), ()
     lanes = _spread_out(hybrid)
     found: list[Course] = []
     neutral = 0
@@ -96,7 +107,8 @@ def find_hybrid_cycles(hybrid: Hybrid) -> tuple[tuple[Cycle, ...], tuple[str, ..
         else:
             found.append(course)
     cycles = sorted((course.cycle for course in found), key=lambda cycle: cycle.period)
-    return tuple(cycles), (*_chattering(hybrid, lanes), *([CONTINUUM] if neutral else []))
+    chattering, rests = _chattering(hybrid, lanes)
+    return tuple(cycles), (*chattering, *([CONTINUUM] if neutral else [])), rests
 
 
 def _spread_out(hybrid: Hybrid) -> list[Lane]:
@@ -123,9 +135,13 @@ def _spread_out(hybrid: Hybrid) -> list[Lane]:
 
 def _lane(hybrid: Hybrid, ran: Trajectories, b: int) -> Lane:
     switches = ran.switches.of(b)
-    chatters = ran.ending(b) is Ending.CHATTERING
+    ending = ran.ending(b)
     return Lane(
-        switches, on_axes(hybrid, switches.after), chatters, on_axes(hybrid, ran.ended_in[b])
+        switches,
+        on_axes(hybrid, switches.after),
+        ending is Ending.CHATTERING,
+        ending is Ending.LEFT_DOMAIN,
+        on_axes(hybrid, ran.ended_in[b]),
     )
 
 
@@ -258,16 +274,38 @@ def _drawn(
     return times[order], states[order]
 
 
-def _chattering(hybrid: Hybrid, lanes: list[Lane]) -> Iterator[str]:
-    """A sentence for each pair of modes between which trajectories switch without end."""
+def _chattering(hybrid: Hybrid, lanes: list[Lane]) -> tuple[list[str], tuple[Array, ...]]:
+    """A sentence for each pair of modes between which trajectories switch without end, and where.
+
+    The places are those that most of a pair end in. The last sentence goes on with what becomes of
+    the other trajectories.
+    """
     seen: dict[Kind, list[Array]] = {}
     for lane in lanes:
         if lane.chatters:
             low, high = sorted((int(lane.switches.left[-1]), int(lane.switches.entered[-1])))
             seen.setdefault((low, high), []).append(lane.end)
+    notes, rests = [], list[Array]()
     for (low, high), places in seen.items():
         share = 100.0 * len(places) / len(lanes)
-        where = place_words(hybrid.view.axes, np.median(places, axis=0))
+        middle = np.median(places, axis=0)
+        gaps = np.abs(shortest(hybrid.view, np.array(places) - middle)) / hybrid.view.width
+        if np.mean(gaps.max(axis=-1) < ONE_PLACE) > 0.5:
+            rests.append(frozen(middle))
+        where = place_words(hybrid.view.axes, middle)
         first, second = hybrid.modes[low], hybrid.modes[high]
         what = f"between '{first}' and '{second}'" if low != high else f"of '{first}'"
-        yield f"{CHATTERING}: {share:.0f} % of the trajectories switch without end {what} ({where})"
+        notes.append(
+            f"{CHATTERING}: {share:.0f} % of the trajectories switch without end {what} ({where})"
+        )
+    if notes:
+        notes[-1] += _of_the_others(lanes)
+    return notes, tuple(rests)
+
+
+def _of_the_others(lanes: list[Lane]) -> str:
+    """What becomes of the trajectories that do not chatter: `; 27 % leave the domain`."""
+    leave = sum(lane.leaves for lane in lanes)
+    on = sum(not lane.leaves and not lane.chatters for lane in lanes)
+    told = [(leave, "leave the domain"), (on, "go on for as long as they were followed")]
+    return "".join(f"; {100.0 * n / len(lanes):.0f} % {what}" for n, what in told if n)

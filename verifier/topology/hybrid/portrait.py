@@ -79,7 +79,7 @@ def with_modes(
     others = (mode for mode in range(len(hybrid.modes)) if mode != hybrid.shown)
     look = {"cycles": cycles, "compared": compared}
     each = (shown, *(_in_mode(hybrid, mode, grid, **look) for mode in others))
-    through, notes = find_hybrid_cycles(hybrid) if cycles else ((), ())
+    through, notes, rests = find_hybrid_cycles(hybrid) if cycles else ((), (), ())
     closed = (*through, *(cycle for one in each for cycle in one.cycles))
     closed = tuple(sorted(closed, key=lambda cycle: cycle.period))
     resting = tuple((point, one.mode) for one in each for point in one.fixed_points)
@@ -100,6 +100,7 @@ def with_modes(
             *(note for one in each for note in one.notes),
             *notes,
         ),
+        rests=rests,
     )
 
 
