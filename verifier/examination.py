@@ -10,8 +10,7 @@ from dataclasses import replace
 from runtime.program import Program
 from verifier.diagnosis.diagnose import diagnose
 from verifier.fidelity.stretches.needs import parts_of
-from verifier.fidelity.switching.judge import switching_in
-from verifier.fidelity.verify import judged
+from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.limits.limits import limits_of
 from verifier.report.examination import Examination
 from verifier.robot_topology.compare import compare_features
@@ -37,17 +36,27 @@ def examine(
     """
     tell = progress or _in_silence
     tell("judging")
-    report, study = judged(program, trace)
+    return explain(program, trace, judgement_of(program, trace), tell, only_verdict=only_verdict)
+
+
+def explain(
+    program: Program,
+    trace: Trace,
+    judgement: Judgement,
+    tell: Callable[[str], None],
+    *,
+    only_verdict: bool,
+) -> Examination:
+    """What `examine` does, with the `judgement` of `trace` at hand."""
+    report, study = judgement.report, judgement.study
     origins = origins_of(program)
     if only_verdict:
         return Examination(report, origins=origins)
-    tell("changes of mode")
-    switching = switching_in(program, trace)
     tell("why it departs")
     diagnosis = diagnose(program, trace, study, report)
     tell("features of the field")
     features = compare_features(program, trace, study)
-    partial = Examination(report, switching, diagnosis, None, features, None, origins)
+    partial = Examination(report, judgement.switching, diagnosis, None, features, None, origins)
     if study is None:
         return partial
     tell("the limits of this trace")

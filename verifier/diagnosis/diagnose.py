@@ -22,6 +22,7 @@ from verifier.diagnosis.reporting import candidates_of, departures, reading_of, 
 from verifier.diagnosis.rereading import Reread, reread
 from verifier.diagnosis.scene import Scene, scene_of
 from verifier.diagnosis.selection import CLEAR, Selection, select
+from verifier.fidelity.judging.evidence import evidence_of
 from verifier.fidelity.judging.judgement import results_of
 from verifier.fidelity.shooting.study import Study
 from verifier.report.diagnosis import Diagnosis
@@ -107,7 +108,8 @@ def _told(
     parameters = parameters_of(program, scene.needs)
     numbers, joint = refitted(scene, selection.final, parameters, report.confidence)
     setting = setting_of(scene, joint.effects, joint.values)
-    results = results_of(program, fidelity, altered_study(scene, study, setting))
+    altered = altered_study(scene, study, setting)
+    results = results_of(fidelity, evidence_of(program, altered, report.trace.source))
     units: dict[str, Unit] = report.units
     after = departures(results, report)
     differs = regions(results, units)

@@ -8,8 +8,7 @@ import pytest
 from runtime.arrays import Array
 from specc.loading import load_program
 from tests.verifier.fidelity.switching_robots import Leave, Robot, run
-from verifier.fidelity.switching.judge import switching_in
-from verifier.fidelity.verify import verify
+from verifier.fidelity.verify import judgement_of, verify
 from verifier.report.report import Report, Standing, Verdict
 from verifier.report.switching import Switching
 from verifier.traces.read import read_trace
@@ -85,7 +84,7 @@ def judged(folder: Path, robot: Robot, low: float, seed: int) -> tuple[Report, S
     spec.write_text(SPEC)
     program = load_program(spec)
     trace = read_trace(written(folder, robot, low, seed), program, "auto")
-    switching = switching_in(program, trace)
+    switching = judgement_of(program, trace).switching
     assert switching is not None
     return verify(program, trace), switching
 

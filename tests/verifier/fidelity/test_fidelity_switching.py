@@ -21,8 +21,7 @@ from tests.verifier.fidelity.switching_robots import (
     thermostat_log,
     with_mode,
 )
-from verifier.fidelity.switching.judge import switching_in
-from verifier.fidelity.verify import verify
+from verifier.fidelity.verify import judgement_of, verify
 from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.switching import Switching, SwitchSort, Way
 from verifier.traces.trace import Trace
@@ -40,7 +39,7 @@ def judged_by(program: Program, tolerance: dict[str, float], horizon: float) -> 
 
 
 def switching(program: Program, trace: Trace) -> Switching:
-    found = switching_in(program, trace)
+    found = judgement_of(program, trace).switching
     assert found is not None
     return found
 

@@ -20,13 +20,12 @@ import numpy as np
 from scipy import special
 
 from runtime.arrays import Array, Integers
+from verifier.fidelity.judging.neighbours import correlation_time, gathered, one_run
 from verifier.report.report import Interval, Standing
 
 CONFIDENCE = 0.95
 BLOCK_HORIZONS = 2.0
 FEWEST_BLOCKS = 2
-ROUNDING = 1e-20
-"""Values that differ by less than this share of their squares are the same."""
 
 
 @final
@@ -41,17 +40,24 @@ class Departure:
     interval: Interval
 
 
-def departure_of(plain: Array, mean: Array, variance: Array, noise_doubt: float) -> Departure:
+def departure_of(
+    plain: Array,
+    mean: Array,
+    variance: Array,
+    noise_doubt: float,
+    runs: Integers | None = None,
+) -> Departure:
     """The departure from errors of windows in order of time (W,), none of them NaN.
 
     plain: errors of single samples, for the rmse. mean: errors averaged over a span, and their
-    `variance` from noise, known up to the relative standard error `noise_doubt`.
+    `variance` from noise, known up to the relative standard error `noise_doubt`. runs: the
+    recording (W,) of each window, where they are of several.
     """
     if len(mean) == 0:
         return Departure(0, 0, 0.0, 0.0, Interval(0.0, np.inf))
     squares = mean**2
     total, share = float(np.mean(squares)), float(np.mean(variance))
-    blocks = blocks_of(squares)
+    blocks = blocks_of(squares, runs)
     low, high = _mean_square_interval(squares, blocks)
     slack = special.ndtri(0.5 + CONFIDENCE / 2.0) * noise_doubt * share
     lower = total - share - np.hypot(total - low, slack)
@@ -79,27 +85,14 @@ def standing_of(interval: Interval, tolerance: float) -> Standing:
     return Standing.EXCEEDED if interval.low > tolerance else Standing.UNDECIDED
 
 
-def blocks_of(squares: Array) -> Integers:
-    """The block (W,) of each window, 0, 1, ...; windows start half a horizon apart."""
+def blocks_of(squares: Array, runs: Integers | None = None) -> Integers:
+    """The block (W,) of each window, 0, 1, ...; windows start half a horizon apart.
+
+    runs: the recording (W,) of each window, where they are of several.
+    """
     least = BLOCK_HORIZONS / 0.5
-    size = max(least, np.ceil(2.0 * correlation_time(squares)))
-    count = max(1, int(len(squares) // size))
-    return np.arange(len(squares)) * count // len(squares)
-
-
-def correlation_time(values: Array) -> float:
-    """The integrated autocorrelation time, in samples; 1 for independent values."""
-    deviation = values - np.mean(values)
-    power = float(np.sum(deviation**2))
-    found = 1.0
-    if power <= ROUNDING * float(np.sum(values**2)):
-        return found
-    for lag in range(1, len(values) // 3):
-        correlation = float(np.sum(deviation[:-lag] * deviation[lag:])) / power
-        if correlation <= 0.0:
-            break
-        found += 2.0 * correlation
-    return found
+    size = max(least, np.ceil(2.0 * correlation_time(squares, runs)))
+    return gathered(one_run(len(squares)) if runs is None else runs, size)
 
 
 def standard_error(values: Array, blocks: Integers) -> float:

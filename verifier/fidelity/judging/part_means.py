@@ -9,7 +9,8 @@ recordings, too.
 
 Errors of neighbouring windows depend on one another (they overlap, and unrest may last), so
 windows are gathered in *clusters* of at least 1.5 horizons, longer where what the parts leave
-unexplained stays correlated for longer (Geyer's initial positive sequence, 1992).
+unexplained stays correlated for longer (Geyer's initial positive sequence, 1992). No cluster
+holds windows of two recordings.
 """
 
 from dataclasses import dataclass
@@ -19,7 +20,8 @@ import numpy as np
 
 from runtime.arrays import Array, Integers
 from verifier.fidelity.judging.conditional_mean import Means, conditional_means
-from verifier.fidelity.judging.departure import CONFIDENCE, correlation_time
+from verifier.fidelity.judging.departure import CONFIDENCE
+from verifier.fidelity.judging.neighbours import correlation_time, gathered, one_run
 from verifier.fidelity.judging.parts import LEAST, Condition, Part, parts_of
 from verifier.fidelity.shooting.shooting import Errors
 from verifier.report.report import Interval, Standing
@@ -92,16 +94,22 @@ class _Group:
 
 
 def part_means(
-    errors: Errors, conditions: tuple[Condition, ...], tolerance: float, chance: float
+    errors: Errors,
+    conditions: tuple[Condition, ...],
+    tolerance: float,
+    chance: float,
+    runs: Integers | None = None,
 ) -> PartMeans:
     """The means of errors of W windows in order of time, none of them NaN.
 
-    conditions: what each of the windows ran under. A mean counts as beyond the tolerance where
+    conditions: what each of the windows ran under. runs: the recording (W,) of each, where they
+    are of several. A mean counts as beyond the tolerance where
     that is shown after Bonferroni's correction for their number, with `chance` of being wrong;
     it decides as Holm's correction does whether there is any. That all means are within it needs
     no correction (Berger 1982).
     """
-    clusters, fine, parts, residual = _parted(errors, conditions, tolerance)
+    runs = one_run(len(errors.mean)) if runs is None else runs
+    clusters, fine, parts, residual = _parted(errors, conditions, tolerance, runs)
     told = [_manners(errors, clusters, tolerance)]
     if len(parts) > 1:
         told += [_plain(errors, part, clusters) for part in parts]
@@ -128,16 +136,14 @@ def blur_of(errors: Errors) -> float:
     return carried + unsure
 
 
-def clusters_of(residual: Array) -> Integers:
+def clusters_of(residual: Array, runs: Integers) -> Integers:
     """The cluster (W,) of each window, 0, 1, ...: long enough for these residuals."""
     least = CLUSTER_HORIZONS * WINDOWS_PER_HORIZON
-    size = max(least, np.ceil(2.0 * correlation_time(residual)))
-    count = max(1, int(len(residual) // size))
-    return np.arange(len(residual)) * count // len(residual)
+    return gathered(runs, max(least, np.ceil(2.0 * correlation_time(residual, runs))))
 
 
 def _parted(
-    errors: Errors, conditions: tuple[Condition, ...], tolerance: float
+    errors: Errors, conditions: tuple[Condition, ...], tolerance: float, runs: Integers
 ) -> tuple[Integers, tuple[Part, ...], tuple[Part, ...], Array]:
     """The clusters (W,), fine parts, coarse ones, and what these leave of the errors (W,).
 
@@ -145,11 +151,11 @@ def _parted(
     be shown to be within it. What windows scatter by is seen in the finest parts that there are,
     where the least of it is due to different places.
     """
-    clusters = clusters_of(np.zeros(len(errors.mean)))
+    clusters = clusters_of(np.zeros(len(errors.mean)), runs)
     slopes = _manners(errors, clusters, tolerance).means.residual
     if np.max(np.abs(slopes)) <= ROUNDING * tolerance:
         slopes = np.zeros(len(slopes))
-    clusters = clusters_of(_within(slopes, parts_of(conditions, clusters)))
+    clusters = clusters_of(_within(slopes, parts_of(conditions, clusters)), runs)
     fine = parts_of(conditions, clusters)
     unrest = _unrest(_within(slopes, fine), clusters, fine)
     wanted = (STUDENT * unrest / (SHARP * tolerance)) ** 2 if tolerance > 0.0 else np.inf

@@ -1,10 +1,12 @@
 """Where in phase space: the cells of the coverage, and which of them were seen."""
 
+from collections.abc import Collection
+
 import numpy as np
 
 from runtime.arrays import Array, Integers
 from runtime.program import Control, Fidelity, Kind, Program, State
-from verifier.fidelity.stretches.needs import Needs, names_read, parts_of
+from verifier.fidelity.stretches.needs import names_read, parts_of
 from verifier.report.report import CellAxis, Coverage
 
 CELLS = {1: 20, 2: 10, 3: 5}
@@ -14,10 +16,14 @@ ENOUGH = 3
 """So many effective samples make a cell seen."""
 
 
-def axes_of(program: Program, needs: Needs, fidelity: Fidelity) -> tuple[CellAxis, ...]:
-    """The axes of the declared region; without one, what the field reads, over its domain."""
+def axes_of(
+    program: Program, constant: Collection[str], fidelity: Fidelity
+) -> tuple[CellAxis, ...]:
+    """The axes of the declared region; without one, what the field reads, over its domain.
+
+    constant: the names of inputs that never change.
+    """
     parts = parts_of(program)
-    constant = {each.name for each in needs.inputs if each.series is None}
     read = [name for name in parts if name in names_read(program) and name not in constant]
     chosen = (read or list(fidelity.tolerance))[:MOST_AXES]
     bounds = fidelity.region or {name: (parts[name].low, parts[name].high) for name in chosen}

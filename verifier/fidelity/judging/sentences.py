@@ -4,7 +4,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans
 from runtime.program import Unit
-from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.judging.evidence import Evidence
 from verifier.report.report import (
     CellAxis,
     Coverage,
@@ -54,9 +54,9 @@ def worst(result: VariableResult, units: dict[str, Unit]) -> list[str]:
     ]
 
 
-def proportion(study: Study, result: VariableResult) -> list[str]:
+def proportion(evidence: Evidence, result: VariableResult) -> list[str]:
     """Whether the robot simply moves more, or less, than predicted."""
-    error, moved = _declared(study, result)
+    error, moved = _declared(evidence, result)
     if not np.any(moved) or not np.any(error):
         return []
     slope = float(np.sum(error * moved) / np.sum(moved**2))
@@ -86,9 +86,9 @@ def within(result: VariableResult) -> str:
     )
 
 
-def unmoved(study: Study, result: VariableResult) -> list[str]:
+def unmoved(evidence: Evidence, result: VariableResult) -> list[str]:
     """Whether a spec in which nothing moves would have passed as well."""
-    error, moved = _declared(study, result)
+    error, moved = _declared(evidence, result)
     way = float(np.sqrt(np.mean((error + moved) ** 2)))
     if way > result.tolerance:
         return []
@@ -246,11 +246,10 @@ def where(region: RegionMean, result: VariableResult, units: dict[str, Unit]) ->
     return ", ".join(told)
 
 
-def _declared(study: Study, result: VariableResult) -> tuple[Array, Array]:
+def _declared(evidence: Evidence, result: VariableResult) -> tuple[Array, Array]:
     """Errors at the declared horizon, and predicted ways to there, of the counted windows."""
-    j = [each.state.name for each in study.plan.samples].index(result.name)
-    errors = study.shots.errors[-1][j]
-    kept = np.isfinite(errors.mean) & ~study.shots.is_lost
+    errors = evidence.errors[-1][evidence.index_of(result.name)]
+    kept = evidence.kept(errors)
     return errors.mean[kept], errors.moved[kept]
 
 

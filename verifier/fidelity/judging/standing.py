@@ -14,7 +14,7 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.arrays import Array
+from runtime.arrays import Array, Integers
 from verifier.fidelity.judging.conditional_mean import conditional_means
 from verifier.fidelity.judging.departure import CONFIDENCE
 from verifier.fidelity.judging.part_means import MOSTLY, PartMeans, blur_of, part_means
@@ -44,19 +44,20 @@ def judge_errors(
     conditions: tuple[Condition, ...],
     departure: Interval,
     allowed: tuple[float, float],
+    runs: Integers,
 ) -> Judged:
     """Judge the errors of W windows in order of time, none of them NaN.
 
     conditions: what each window ran under. departure: the interval of their root mean square.
-    allowed: the tolerance, and the scatter beside it.
+    allowed: the tolerance, and the scatter beside it. runs: the recording (W,) of each window.
     """
     tolerance, scatter = allowed
     if len(errors.mean) == 0:
         nothing = PartMeans((), 0.0, 0.0, 0, np.zeros(0, np.int64))
         return Judged(Standing.UNDECIDED, 0.0, nothing, 0.0, Interval(-np.inf, np.inf))
-    parts = part_means(errors, conditions, tolerance, ERROR / 2.0)
+    parts = part_means(errors, conditions, tolerance, ERROR / 2.0, runs)
     situation, blur = _situation(errors, conditions)
-    foretold = shown_structure(errors.mean, situation, parts.clusters, ERROR / 2.0)
+    foretold = shown_structure(errors.mean, situation, parts.clusters, ERROR / 2.0, runs)
     carried = float(np.sqrt(np.mean(errors.carried)))
     systematic = max(parts.shown - carried * blur, foretold - carried * blur, 0.0)
     ones = np.ones((len(errors.mean), 1))

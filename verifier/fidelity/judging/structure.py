@@ -22,6 +22,7 @@ import numpy as np
 from scipy import special
 
 from runtime.arrays import Array, Integers
+from verifier.fidelity.judging.neighbours import one_run
 
 MOST: Final = 600
 """So many windows are enough; of more, every second, third ... one is taken."""
@@ -34,27 +35,44 @@ FEWEST: Final = 4
 """With fewer clusters nothing is foretold."""
 
 
-def shown_structure(errors: Array, situation: Array, clusters: Integers, chance: float) -> float:
+def shown_structure(
+    errors: Array,
+    situation: Array,
+    clusters: Integers,
+    chance: float,
+    runs: Integers | None = None,
+) -> float:
     """The root mean square of the errors (W,) that is shown to be no chance, 0 if none.
 
     situation: (W, d). clusters: (W,) which windows depend on one another. `chance`: of the figure
-    being above the truth.
+    being above the truth. runs: the recording (W,) of each window, where they are of several.
     """
-    stride = -(-len(errors) // MOST)
-    errors, situation, clusters = errors[::stride], situation[::stride], clusters[::stride]
-    _, place = np.unique(clusters, return_inverse=True)
+    runs = one_run(len(errors)) if runs is None else runs
+    taken = _thinned(runs)
+    errors, situation = errors[taken], situation[taken]
+    clusters, runs = clusters[taken], runs[taken]
+    _, first, place = np.unique(clusters, return_index=True, return_inverse=True)
     count = int(place.max(initial=-1)) + 1
     if count < FEWEST or not np.any(errors):
         return 0.0
     scaled = _scaled(situation)
     plain = 1.0 + scaled @ scaled.T
     kernels = (plain, plain + _bumps(scaled))
-    return max(_shown(errors, kernel, place, chance / len(kernels)) for kernel in kernels)
+    groups = (place, runs[first])
+    return max(_shown(errors, kernel, groups, chance / len(kernels)) for kernel in kernels)
 
 
-def _shown(errors: Array, kernel: Array, place: Integers, chance: float) -> float:
-    """What the forecast by one kernel (W, W) shows."""
-    forecast = _foretold(errors, kernel, place)
+def _thinned(runs: Integers) -> Integers:
+    """Which windows are taken: every one, or every second ... of each recording."""
+    stride = -(-len(runs) // MOST)
+    starts = np.searchsorted(runs, runs)
+    return np.flatnonzero((np.arange(len(runs)) - starts) % max(stride, 1) == 0)
+
+
+def _shown(errors: Array, kernel: Array, groups: tuple[Integers, Integers], chance: float) -> float:
+    """What the forecast by one kernel (W, W) shows; `groups`: see `_foretold`."""
+    place, _ = groups
+    forecast = _foretold(errors, kernel, groups)
     size = float(np.sqrt(np.mean(forecast**2)))
     if size == 0.0:
         return 0.0
@@ -78,17 +96,20 @@ def _scaled(situation: Array) -> Array:
     return np.asarray((situation - np.mean(situation, axis=0))[:, moving] / spread[moving])
 
 
-def _foretold(errors: Array, kernel: Array, place: Integers) -> Array:
+def _foretold(errors: Array, kernel: Array, groups: tuple[Integers, Integers]) -> Array:
     """The forecast (W,) of each cluster from the others; its neighbours in time are left out, too.
 
+    groups: the cluster (W,) of each window, and the recording (G,) of each cluster.
     A Gaussian's mean given all but A is e_A - P_AA^-1 (P e)_A, P the inverse of the covariance
     (Rasmussen and Williams 2006, section 5.4.2).
     """
+    place, runs = groups
     precision = np.linalg.inv(kernel + RIDGE * np.eye(len(errors)))
     pulled = precision @ errors
     forecast = np.empty(len(errors))
     for cluster in range(int(place.max()) + 1):
-        near = np.flatnonzero(np.abs(place - cluster) <= 1)
+        beside = (np.abs(place - cluster) <= 1) & (runs[place] == runs[cluster])
+        near = np.flatnonzero(beside)
         own = place[near] == cluster
         step = np.linalg.solve(precision[np.ix_(near, near)], pulled[near])
         forecast[near[own]] = (errors[near] - step)[own]

@@ -7,11 +7,11 @@ import numpy as np
 
 from runtime.program import Unit
 from verifier.fidelity.judging import sentences
-from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.judging.evidence import Evidence
 from verifier.fidelity.stretches.needs import Needs
 from verifier.fidelity.stretches.segments import Segments
 from verifier.report.report import Coverage, Standing, VariableResult, Verdict
-from verifier.report.wording import listed, number, percent, seconds
+from verifier.report.wording import listed, number, percent, seconds, span
 
 MOST_LOST = 0.1
 """With a larger share of predictions leaving the domain, there is no PASS."""
@@ -32,19 +32,19 @@ class Finding:
 
 
 def decide(
-    study: Study,
+    evidence: Evidence,
     results: tuple[VariableResult, ...],
     coverage: Coverage,
     judged: float,
     units: dict[str, Unit],
 ) -> Finding:
     """FAIL where a tolerance is shown to be exceeded; PASS where all speaks for it."""
-    bars = _bars(study)
+    bars = _bars(evidence)
     if bars:
-        return Finding(Verdict.INCONCLUSIVE, tuple(bars), tuple(_declare(study)))
+        return Finding(Verdict.INCONCLUSIVE, tuple(bars), tuple(_declare(evidence)))
     failed = [r for r in results if r.standing is Standing.EXCEEDED]
     if failed:
-        return _failed(study, failed, units)
+        return _failed(evidence, failed, units)
     doubts = [sentences.undecided(r, units) for r in results if r.standing is Standing.UNDECIDED]
     advice = []
     for result in results:
@@ -55,21 +55,21 @@ def decide(
     if not coverage.is_reached:
         doubts.append(sentences.uncovered(coverage))
         advice += sentences.unseen(coverage)
-    doubts += _lost(study)
+    doubts += _lost(evidence)
     if doubts:
         return Finding(Verdict.INCONCLUSIVE, tuple(doubts), tuple(dict.fromkeys(advice)))
     reasons = [sentences.within(r) for r in results]
-    reasons += [sentence for r in results for sentence in sentences.unmoved(study, r)]
+    reasons += [sentence for r in results for sentence in sentences.unmoved(evidence, r)]
     if coverage.required == 0.0:
         reasons.append(sentences.scope(coverage))
     return Finding(Verdict.PASS, tuple(reasons), ())
 
 
-def _failed(study: Study, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:
+def _failed(evidence: Evidence, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:
     reasons = []
     for result in failed:
         reasons.append(sentences.exceeded(result))
-        reasons += sentences.proportion(study, result)
+        reasons += sentences.proportion(evidence, result)
         reasons += sentences.worst(result, units)
     advice = (
         "before blaming the robot, check units, signs and the `delay:` of every entry in `trace:`",
@@ -77,30 +77,30 @@ def _failed(study: Study, failed: list[VariableResult], units: dict[str, Unit]) 
     return Finding(Verdict.FAIL, tuple(reasons), advice)
 
 
-def _bars(study: Study) -> list[str]:
+def _bars(evidence: Evidence) -> list[str]:
     """What forbids any verdict."""
     bars = [
         f"{each.name} is neither in the trace nor declared constant; the figures assume"
         f" {number(each.value)} (SI), the spec's default"
-        for each in study.plan.needs.unknown
+        for each in evidence.unknown
     ]
-    if study.step_error > MOST_STEP_ERROR:
+    if evidence.step_error > MOST_STEP_ERROR:
         bars.append(
             "the field could not be integrated accurately enough: halving the step still moves"
-            f" predictions by {percent(study.step_error)} of the tolerance"
+            f" predictions by {percent(evidence.step_error)} of the tolerance"
         )
     return bars
 
 
-def _declare(study: Study) -> list[str]:
+def _declare(evidence: Evidence) -> list[str]:
     return [
         f"log {each.name}, or write `trace: {{{each.name}: {{constant: ...}}}}`"
-        for each in study.plan.needs.unknown
+        for each in evidence.unknown
     ]
 
 
-def _lost(study: Study) -> list[str]:
-    share = float(np.mean(study.shots.is_lost))
+def _lost(evidence: Evidence) -> list[str]:
+    share = float(np.mean(evidence.is_lost))
     if share <= MOST_LOST:
         return []
     return [
@@ -130,15 +130,13 @@ def too_short(needs: Needs, segments: Segments, horizon: float) -> str:
     )
 
 
-def notes_of(study: Study, results: tuple[VariableResult, ...]) -> list[str]:
+def notes_of(evidence: Evidence, results: tuple[VariableResult, ...]) -> list[str]:
     """How the figures were made: clocks, windows, noise, losses on the way."""
-    clocks = sorted({series.clock for series in study.plan.needs.series})
-    windows = study.plan.windows
     notes = [
-        f"times are {listed(clocks)} stamps",
-        f"{len(windows.times)} windows of {number(windows.horizon)} s, one every half horizon",
+        f"times are {listed([*evidence.clocks])} stamps",
+        f"{len(evidence.starts)} windows of {number(evidence.horizon)} s, one every half horizon",
     ]
-    lost = int(np.sum(study.shots.is_lost))
+    lost = int(np.sum(evidence.is_lost))
     if lost:
         notes.append(f"{lost} windows are not counted: their prediction left the spec's domain")
     rare = max((result.unjudged for result in results), default=0)
@@ -147,10 +145,26 @@ def notes_of(study: Study, results: tuple[VariableResult, ...]) -> list[str]:
             f"{rare} windows ran in a mode that was seen too rarely to be judged on its own: they"
             " count for the whole alone"
         )
-    for each, noise in zip(study.plan.samples, study.noise, strict=True):
-        if noise.correlation > WHITE:
+    return [*notes, *_noise_notes(evidence)]
+
+
+def _noise_notes(evidence: Evidence) -> list[str]:
+    """Which noise is not white, recording by recording; and how loud it was in each of them."""
+    notes = []
+    for j, state in enumerate(evidence.states):
+        every = [noise[j] for noise in evidence.noise]
+        if len(every) > 1:
+            sigmas = [noise.sigma for noise in every]
             notes.append(
-                f"the noise of {each.state.name} is not white (correlation of successive samples"
-                f" {noise.correlation:.2f}): its slow part counts as scatter of the windows"
+                f"the noise of {state.name} is told by each recording for itself:"
+                f" {span(min(sigmas), max(sigmas), state.unit)}"
             )
+        for source, noise in zip(evidence.sources, every, strict=True):
+            if noise.correlation > WHITE:
+                where = f" in {source}" if len(every) > 1 else ""
+                notes.append(
+                    f"the noise of {state.name}{where} is not white (correlation of successive"
+                    f" samples {noise.correlation:.2f}): its slow part counts as scatter of the"
+                    " windows"
+                )
     return notes

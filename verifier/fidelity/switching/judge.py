@@ -3,7 +3,7 @@
 from collections import Counter
 
 from runtime.program import Fidelity, Program
-from verifier.fidelity.stretches.needs import Needs, mode_of, needs_of
+from verifier.fidelity.stretches.needs import Needs, mode_of
 from verifier.fidelity.switching import sentences
 from verifier.fidelity.switching.arrivals import arrivals_of
 from verifier.fidelity.switching.jumps import jumps_of
@@ -15,24 +15,10 @@ from verifier.fidelity.switching.told import needs_told
 from verifier.fidelity.switching.ways import Compared, WayMeans, means_of
 from verifier.report.report import Standing
 from verifier.report.switching import Jump, Switch, Switching, SwitchSort, Timing, Way
-from verifier.traces.trace import Trace
 
 FEWEST = 3
 """With fewer samples there is nothing to fit."""
 AGAINST = {SwitchSort.UNEXPECTED, SwitchSort.MISSED, SwitchSort.WRONG_TARGET}
-
-
-def switching_in(program: Program, trace: Trace) -> Switching | None:
-    """The judgement of all changes of mode in a trace.
-
-    None for a program without ways out of modes or without tolerances, and for a trace that lacks
-    what is predicted.
-    """
-    needs = needs_of(program, trace)
-    if program.fidelity is None or needs.missing or not needs.driven:
-        return None
-    found = switching_of(program, needs, program.fidelity)
-    return None if found is None else found[0]
 
 
 def switching_of(

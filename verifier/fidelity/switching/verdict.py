@@ -6,15 +6,18 @@ that is shown to be wrong is a FAIL of its own, and where an input is missing no
 
 from dataclasses import replace
 
-from verifier.fidelity.stretches.needs import Needs
+from verifier.fidelity.stretches.needs import Input
 from verifier.report.report import Report, Standing, Verdict
 from verifier.report.switching import Switching
 
 
-def with_switching(report: Report, switching: Switching, needs: Needs) -> Report:
-    """The report, its verdict no better than the changes of mode allow."""
-    if needs.unknown:
-        is_untold = any(each.name == switching.mode for each in needs.unknown)
+def with_switching(report: Report, switching: Switching, unknown: tuple[Input, ...]) -> Report:
+    """The report, its verdict no better than the changes of mode allow.
+
+    unknown: the inputs that the trace does not tell.
+    """
+    if unknown:
+        is_untold = any(each.name == switching.mode for each in unknown)
         return _told(report, switching, report.verdict, first=False) if is_untold else report
     match switching.standing, report.verdict:
         case Standing.EXCEEDED, verdict:
