@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from specc.reported import write_report as write_report
     from specc.reported import write_reports as write_reports
     from specc.running import simulate as simulate
+    from specc.runs import Runs as Runs
     from specc.runs import verify_each as verify_each
+    from specc.runs import verify_together as verify_together
     from specc.verifying import Verification as Verification
     from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
@@ -66,6 +68,8 @@ HOMES = {
     "write_report": "specc.reported",
     "write_reports": "specc.reported",
     "verify_each": "specc.runs",
+    "verify_together": "specc.runs",
+    "Runs": "specc.runs",
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
     "Comparison": "verifier.topology.comparing.comparison",

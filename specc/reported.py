@@ -1,6 +1,7 @@
 """Verdicts as files: a page, numbers, text, or what CI systems read."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -9,7 +10,7 @@ from specc import __version__
 from specc.files import json_bytes, unknown_suffix, write_atomically
 from specc.pages.report_page import report_page
 from specc.pages.runs_page import runs_page
-from specc.runs import Outcome, Unusable, unusable, verifications
+from specc.runs import Outcome, Runs, Unusable, runs_of, unusable, verifications
 from specc.runs_record import run_record, runs_record
 from specc.runs_text import runs_text
 from specc.verifying import Verification
@@ -20,6 +21,8 @@ from verifier.report.sarif import as_sarif
 
 KINDS: Final = (".html", ".json", ".txt", ".xml", ".sarif")
 """Of reports; .xml is JUnit's."""
+OPEN: Final = {Rule.UNDECIDED, Rule.COVERAGE, Rule.INCONCLUSIVE}
+"""What more recordings may decide."""
 
 
 def write_report(verification: Verification, path: Path | str) -> None:
@@ -36,26 +39,52 @@ def write_report(verification: Verification, path: Path | str) -> None:
             write_reports([verification], path)
 
 
-def write_reports(outcomes: Sequence[Outcome], path: Path | str) -> None:
-    """Write the verdicts on many recordings as one file of the same kinds."""
+def write_reports(outcomes: Sequence[Outcome] | Runs, path: Path | str) -> None:
+    """Write the verdicts on many recordings, each and together, as one file of the same kinds."""
     path = Path(path)
+    runs = outcomes if isinstance(outcomes, Runs) else runs_of(outcomes)
     match path.suffix.lower():
         case ".html":
-            data = runs_page(outcomes).encode()
+            data = runs_page(runs).encode()
         case ".json":
-            data = json_bytes(runs_record(outcomes))
+            data = json_bytes(runs_record(runs))
         case ".txt":
-            data = runs_text(outcomes).encode()
+            data = runs_text(runs).encode()
         case ".xml":
-            made = [each.examination for each in verifications(outcomes)]
-            broken = [(each.source, render(each.error.diagnostics)) for each in unusable(outcomes)]
-            data = as_junit(made, broken)
+            data = _junit(runs)
         case ".sarif":
-            found = [(source_of(each), findings_in(each)) for each in outcomes]
-            data = json_bytes(as_sarif(found, __version__))
+            data = json_bytes(as_sarif(findings_by_source(runs), __version__))
         case _:
             raise unknown_suffix(path, ", ".join(KINDS))
     write_atomically(path, data)
+
+
+def _junit(runs: Runs) -> bytes:
+    judged = verifications(runs.outcomes)
+    made = [*(p.examination for p in runs.pools), *(each.examination for each in judged)]
+    parts = frozenset(each.examination for each in runs.members)
+    broken = [(each.source, render(each.error.diagnostics)) for each in unusable(runs.outcomes)]
+    return as_junit(made, broken, parts)
+
+
+def findings_by_source(runs: Runs) -> list[tuple[str, tuple[Finding, ...]]]:
+    """All findings, each list with what it is about: all recordings together, or one.
+
+    What one recording leaves open is a note where others decide with it.
+    """
+    found = [(pool.report.trace.source, findings_of(pool.examination)) for pool in runs.pools]
+    members = runs.members
+    for each in runs.outcomes:
+        findings = findings_in(each)
+        if each in members:
+            findings = tuple(_as_part(finding) for finding in findings)
+        found.append((source_of(each), findings))
+    return found
+
+
+def _as_part(finding: Finding) -> Finding:
+    is_open = finding.level is Level.WARNING and finding.rule in OPEN
+    return replace(finding, level=Level.NOTE) if is_open else finding
 
 
 def source_of(outcome: Outcome) -> str:

@@ -3,38 +3,50 @@
 from collections.abc import Sequence
 
 from spec_schema.diagnostics import render
-from specc.runs import Outcome, Unusable, counted, together, unusable, verifications
-from specc.verifying import Verification
+from specc.runs import Outcome, Runs, Unusable, counted, unusable, verifications
 from verifier.report.examination_text import examination_text
 from verifier.report.layout import section, table, wrapped
 from verifier.report.report import Report, Verdict
 from verifier.report.wording import percent, seconds, shown
 
 
-def runs_table(outcomes: Sequence[Outcome]) -> str:
-    """A row for each recording, then the reasons, then the worst verdict and the counts."""
-    columns = columns_of(outcomes)
+def runs_table(runs: Runs) -> str:
+    """A row for each recording and for all together, the reasons, the verdict and the counts."""
+    columns = columns_of(runs.outcomes)
     header = ("recording", "verdict", *columns, "coverage", "judged", "lost")
-    rows = [_row(each, columns) for each in outcomes]
-    worst = together(outcomes)
-    last = f"{'' if worst is None else f'{worst.upper()}  '}{counted(outcomes)}"
+    rows = [_row(each, columns) for each in runs.outcomes]
+    rows += [_report_row(pool.report, columns) for pool in runs.pools]
+    last = f"{'' if runs.verdict is None else f'{runs.verdict.upper()}  '}{counted(runs.outcomes)}"
     return "\n\n".join(
         part
         for part in (
             table([header, *rows]),
-            section("why", [wrapped(reason) for reason in reasons_of(outcomes)]),
+            section("why", [wrapped(reason) for reason in reasons_of(runs.outcomes)]),
+            *(section(title, [wrapped(r) for r in reasons]) for title, reasons in told_of(runs)),
             last,
         )
         if part
     )
 
 
-def runs_text(outcomes: Sequence[Outcome]) -> str:
-    """The table, and after it every report in full."""
-    parts = [runs_table(outcomes)]
-    parts += [examination_text(each.examination) for each in verifications(outcomes)]
-    parts += [render(each.error.diagnostics) for each in unusable(outcomes)]
+def runs_text(runs: Runs) -> str:
+    """The table, and after it every report in full, those on all together first."""
+    parts = [runs_table(runs)]
+    parts += [examination_text(each.examination) for each in runs.pools]
+    parts += [examination_text(each.examination) for each in verifications(runs.outcomes)]
+    parts += [render(each.error.diagnostics) for each in unusable(runs.outcomes)]
     return "\n\n\n".join(parts)
+
+
+def told_of(runs: Runs) -> list[tuple[str, tuple[str, ...]]]:
+    """Of each common verdict a title, its reasons, and what to do next."""
+    return [
+        (
+            f"{pool.report.trace.source}: {pool.report.verdict.upper()}",
+            (*pool.report.reasons, *pool.report.advice),
+        )
+        for pool in runs.pools
+    ]
 
 
 def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
@@ -62,7 +74,10 @@ def _row(outcome: Outcome, columns: Sequence[str]) -> tuple[str, ...]:
     if isinstance(outcome, Unusable):
         first = outcome.error.diagnostics[0]
         return (outcome.source, f"can't be used: {first.code}", *("-" for _ in columns), "", "", "")
-    report = outcome.report
+    return _report_row(outcome.report, columns)
+
+
+def _report_row(report: Report, columns: Sequence[str]) -> tuple[str, ...]:
     found = {column_of(report, r.name): r for r in report.variables}
     cells = [
         f"{shown(found[c].declared.departure, found[c].unit)} {found[c].standing}"
@@ -84,9 +99,5 @@ def _why(outcome: Outcome) -> str:
     """The first reason of what did not pass; empty for what did."""
     if isinstance(outcome, Unusable):
         return "; ".join(d.message for d in outcome.error.diagnostics[:3])
-    return _first_reason(outcome)
-
-
-def _first_reason(verification: Verification) -> str:
-    report = verification.report
+    report = outcome.report
     return "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])

@@ -1,7 +1,7 @@
 """A recording judged against its spec, wherever the spec is found."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeAlias, final
 
@@ -11,9 +11,11 @@ from spec_schema.diagnostics import SpecError
 from spec_schema.load import load
 from specc.loading import load_program
 from specc.spec_finding import Found, find_spec
-from verifier.examination import examine
+from verifier.examination import explain
+from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.report.examination import Examination
 from verifier.report.report import Report
+from verifier.traces.files.log import Progress
 from verifier.traces.read import read_trace
 
 Clock: TypeAlias = Literal["auto", "sensor", "log"]
@@ -22,10 +24,14 @@ Clock: TypeAlias = Literal["auto", "sensor", "log"]
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Verification:
-    """An examination, and the spec that it was made under."""
+    """An examination, and the spec that it was made under.
+
+    judgement: what the verdict rests on, without what was read and predicted.
+    """
 
     found: Found
     examination: Examination
+    judgement: Judgement
 
     @property
     def report(self) -> Report:
@@ -41,6 +47,7 @@ def verify(
     strict: bool = False,
     only_verdict: bool = False,
     progress: Callable[[str], None] | None = None,
+    reading: Progress | None = None,
 ) -> Verification:
     """Judge a recording against its spec: the one given, else attached, else the project's.
 
@@ -48,6 +55,7 @@ def verify(
         strict: any loss in the log is an error.
         only_verdict: leave out what explains the verdict.
         progress: is told what is done next, as a phrase.
+        reading: is told now and then how many bytes of how many were read.
 
     Raises:
         SpecError: the spec or the log can't be used.
@@ -60,6 +68,7 @@ def verify(
         strict=strict,
         only_verdict=only_verdict,
         progress=progress,
+        reading=reading,
     )
 
 
@@ -72,6 +81,7 @@ def verify_by(
     strict: bool,
     only_verdict: bool,
     progress: Callable[[str], None] | None,
+    reading: Progress | None,
 ) -> Verification:
     """What `verify` does, with `program_of` to make a program of a spec's path.
 
@@ -84,9 +94,11 @@ def verify_by(
         found = find_spec(trace, None if spec is None else Path(spec), program_of)
     tell = progress or _in_silence
     tell("reading")
-    read = read_trace(trace, found.program, clock, strict=strict)
-    made = examine(found.program, read, only_verdict=only_verdict, progress=tell)
-    return Verification(found, made)
+    read = read_trace(trace, found.program, clock, reading, strict=strict)
+    tell("judging")
+    judgement = judgement_of(found.program, read)
+    made = explain(found.program, read, judgement, tell, only_verdict=only_verdict)
+    return Verification(found, made, replace(judgement, study=None))
 
 
 def _in_silence(_phase: str) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, final
+from typing import TYPE_CHECKING, Annotated, Final, final
 
 import typer
 
@@ -12,7 +12,13 @@ from specc.cli.status import Status
 from specc.cli.warming import warmed
 
 if TYPE_CHECKING:
-    from specc.runs import Outcome
+    from specc.cli.console import Bar
+    from specc.runs import Outcome, Runs
+
+READING: Final = "reading"
+"""The phase in which bytes are counted."""
+PIECES: Final = 1000
+"""Of which the bar shows each recording."""
 
 
 @final
@@ -74,7 +80,8 @@ def verify(
 ) -> int:
     """Judge recordings of a robot against its spec: PASS, FAIL or INCONCLUSIVE, and why.
 
-    With several recordings it prints a table, and ends like the worst of them.
+    With several recordings it prints a table and judges all of one spec together: a FAIL of one
+    counts, else the verdict on all, which short recordings may reach that decide nothing alone.
 
     **Examples**
 
@@ -88,7 +95,7 @@ def verify(
     """
     from specc.files import require_suffix
     from specc.reported import KINDS
-    from specc.runs import Unusable, verify_each
+    from specc.runs import Unusable, runs_of, verify_each
 
     for path in output:
         require_suffix(path, *KINDS)
@@ -96,12 +103,15 @@ def verify(
     outcomes: list[Outcome] = []
     is_interrupted = False
     with shown_bar("verify") as bar:
-
-        def tell(source: str, phase: str) -> None:
-            bar.advance(f"{source}, {phase}", len(outcomes), len(traces))
-
+        watch = _Watch(bar, len(traces))
         each = verify_each(
-            traces, spec, clock.value, strict=strict, only_verdict=quick, progress=tell
+            traces,
+            spec,
+            clock.value,
+            strict=strict,
+            only_verdict=quick,
+            progress=watch.tell,
+            reading=watch.read,
         )
         try:
             outcomes.extend(each)
@@ -109,53 +119,77 @@ def verify(
             is_interrupted = True
     if len(traces) == 1 and outcomes and isinstance(outcomes[0], Unusable):
         raise outcomes[0].error
+    runs = runs_of(outcomes)
     if outcomes:
-        _print(outcomes, form, is_one=len(traces) == 1)
-        _write(outcomes, output, is_one=len(traces) == 1)
+        _print(runs, form, is_one=len(traces) == 1)
+        _write(runs, output, is_one=len(traces) == 1)
     if is_interrupted:
         say(f"interrupted: {len(outcomes)} of {len(traces)} recordings were judged", "bold red")
         return Status.INTERRUPTED
-    return _status(outcomes)
+    return _status(runs)
 
 
-def _print(outcomes: Sequence["Outcome"], form: ReportFormat, *, is_one: bool) -> None:
-    from specc.reported import findings_in, source_of
+@final
+class _Watch:
+    """Shows in a bar which recording is at work: half of it is reading, told by bytes."""
+
+    def __init__(self, bar: "Bar", count: int) -> None:
+        self._bar, self._count = bar, count
+        self._done, self._source, self._told = -1, "", ""
+
+    def tell(self, source: str, phase: str) -> None:
+        """Another phase; each recording begins with being read."""
+        self._source, self._told = source, phase
+        self._done += phase == READING
+        self._show(0.0 if phase == READING else 0.5)
+
+    def read(self, done: int, whole: int) -> None:
+        """So many bytes of how many were read."""
+        self._show(0.5 * done / max(whole, 1))
+
+    def _show(self, share: float) -> None:
+        what = f"{self._source}, {self._told}"
+        self._bar.advance(what, round((self._done + share) * PIECES), self._count * PIECES)
+
+
+def _print(runs: "Runs", form: ReportFormat, *, is_one: bool) -> None:
+    from specc.reported import findings_by_source
     from specc.runs import verifications
     from specc.runs_record import run_record, runs_record
     from specc.runs_text import runs_table
     from verifier.report.annotations import as_annotations
     from verifier.report.examination_text import examination_text
 
-    found = verifications(outcomes)
+    found = verifications(runs.outcomes)
     match form:
         case ReportFormat.JSON:
-            print_json(run_record(found[0]) if is_one else runs_record(outcomes))
+            print_json(run_record(found[0]) if is_one else runs_record(runs))
         case ReportFormat.GITHUB:
-            lines = [as_annotations(findings_in(each), source_of(each)) for each in outcomes]
+            lines = [as_annotations(each, source) for source, each in findings_by_source(runs)]
             print_text("\n".join(line for line in lines if line))
         case ReportFormat.TEXT:
             for how in dict.fromkeys(each.found.how for each in found):
                 say(f"spec: {how}")
-            print_text(examination_text(found[0].examination) if is_one else runs_table(outcomes))
+            print_text(examination_text(found[0].examination) if is_one else runs_table(runs))
 
 
-def _write(outcomes: Sequence["Outcome"], output: Sequence[Path], *, is_one: bool) -> None:
+def _write(runs: "Runs", output: Sequence[Path], *, is_one: bool) -> None:
     from specc.reported import write_report, write_reports
     from specc.runs import verifications
 
     for path in output:
         if is_one:
-            write_report(verifications(outcomes)[0], path)
+            write_report(verifications(runs.outcomes)[0], path)
         else:
-            write_reports(outcomes, path)
+            write_reports(runs, path)
         say(f"wrote {path}", "bold")
 
 
-def _status(outcomes: Sequence["Outcome"]) -> int:
-    """2 where a recording can't be used, else that of the worst verdict."""
-    from specc.runs import together, unusable
+def _status(runs: "Runs") -> int:
+    """2 where a recording can't be used, else that of the verdict on all."""
+    from specc.runs import unusable
 
-    if unusable(outcomes):
+    if unusable(runs.outcomes):
         return Status.BAD_INPUT
     verdicts = {"pass": Status.YES, "fail": Status.NO, "inconclusive": Status.INCONCLUSIVE}
-    return verdicts[str(together(outcomes))]
+    return verdicts[str(runs.verdict)]

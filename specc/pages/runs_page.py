@@ -1,4 +1,4 @@
-"""The reports of many recordings as one page: a table of all, and each report after it."""
+"""The reports of many recordings as one page: a table, then all together, then each by itself."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -6,10 +6,10 @@ from typing import Final
 from specc.figures.quantities import number, seconds
 from specc.pages.page import Page, RunRow, RunsPage
 from specc.pages.report_page import SIGNS, gathered, rendered
-from specc.runs import Outcome, Unusable, counted, together, verifications
+from specc.runs import Outcome, Pool, Runs, Unusable, counted, verifications
 from specc.runs_text import column_of, columns_of, reasons_of
 from specc.verifying import Verification
-from verifier.report.report import Coverage, Verdict
+from verifier.report.report import Coverage, Report, Verdict
 from verifier.report.wording import percent
 
 DRAWN: Final = 6
@@ -18,36 +18,46 @@ MOST: Final = 8
 """So many reasons stand at the top."""
 
 
-def runs_page(outcomes: Sequence[Outcome]) -> str:
+def runs_page(runs: Runs) -> str:
     """Many recordings as self-contained HTML."""
-    return rendered("runs.html.j2", gathered_runs(outcomes))
+    return rendered("runs.html.j2", gathered_runs(runs))
 
 
-def gathered_runs(outcomes: Sequence[Outcome]) -> RunsPage:
+def gathered_runs(runs: Runs) -> RunsPage:
     """What the page says."""
-    worst = together(outcomes)
+    worst, outcomes = runs.verdict, runs.outcomes
     columns = columns_of(outcomes)
     found = verifications(outcomes)
     anchors = {id(each): f"run-{k + 1}" for k, each in enumerate(found)}
+    anchors |= {id(each): f"together-{k + 1}" for k, each in enumerate(runs.pools)}
     how = (
         "Departures are at the declared horizon, without the sensors' noise; bold ones exceed their"
-        " tolerance. The verdict on all is the worst of them."
+        " tolerance. The verdict is FAIL where one recording fails, else that on all together, for"
+        " which the windows of all are judged at once."
     )
     if _is_long(outcomes):
         how += " The variables of recordings that passed are not drawn."
+    own = tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes)
+    common = tuple(_report_row(each.report, anchors[id(each)], columns) for each in runs.pools)
+    pages = [(anchors[id(e)], _pool_page(e, anchors[id(e)])) for e in runs.pools]
+    pages += [(anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found]
+    reasons = [reason for pool in runs.pools for reason in pool.report.reasons]
     return RunsPage(
         title=counted(outcomes),
         verdict="unusable" if worst is None else str(worst),
         sign="!" if worst is None else SIGNS[worst],
         headline=counted(outcomes),
-        reasons=reasons_of(outcomes)[:MOST],
+        reasons=(*reasons, *reasons_of(outcomes))[:MOST],
         columns=(*columns, "coverage", "judged", "lost"),
-        rows=tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes),
+        rows=(*own, *common),
         how=how,
-        pages=tuple(
-            (anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found
-        ),
+        pages=tuple(pages),
     )
+
+
+def _pool_page(pool: Pool, anchor: str) -> Page:
+    """The page on all recordings together; what is drawn over time stands with each of them."""
+    return gathered(pool.examination, f"{anchor}-", is_drawn=False)
 
 
 def _is_long(outcomes: Sequence[Outcome]) -> bool:
@@ -63,7 +73,10 @@ def _row(outcome: Outcome, anchor: str, columns: Sequence[str]) -> RunRow:
     if isinstance(outcome, Unusable):
         why = "; ".join(each.message for each in outcome.error.diagnostics)
         return RunRow("", outcome.source, "unusable", "!", (), why)
-    report = outcome.report
+    return _report_row(outcome.report, anchor, columns)
+
+
+def _report_row(report: Report, anchor: str, columns: Sequence[str]) -> RunRow:
     found = {column_of(report, r.name): r for r in report.variables}
     cells = [
         (number(found[c].declared.departure / found[c].unit.scale), str(found[c].standing))

@@ -59,13 +59,16 @@ def verify(*arguments: str) -> int:
     ("traces", "status"),
     [
         (("good.csv", "good.csv"), 0),
-        (("good.csv", "short.csv"), 4),
+        (("good.csv", "short.csv"), 0),
+        (("short.csv", "short.csv"), 4),
         (("short.csv", "good.csv", "bad.csv"), 1),
         (("bad.csv", "torn.csv", "good.csv"), 2),
         (("nowhere.mcap", "good.csv"), 2),
     ],
 )
-def test_the_exit_status_is_that_of_the_worst(traces: tuple[str, ...], status: int) -> None:
+def test_one_fail_counts_and_else_the_verdict_on_all_together(
+    traces: tuple[str, ...], status: int
+) -> None:
     assert verify(*traces) == status
 
 
@@ -97,15 +100,16 @@ def test_one_report_holds_all_recordings(capsys: pytest.CaptureFixture[str]) -> 
     assert [run["trace"]["source"] for run in record["runs"]] == ["good.csv", "bad.csv", "torn.csv"]
     assert record["runs"][2]["diagnostics"][0]["code"].startswith("V3")
     suites = ET.fromstring(Path("r.junit.xml").read_text())  # noqa: S314  our own
-    assert [suite.attrib["name"] for suite in suites] == ["good.csv", "bad.csv", "torn.csv"]
+    names = ["2 recordings together", "good.csv", "bad.csv", "torn.csv"]
+    assert [suite.attrib["name"] for suite in suites] == names
     sarif = json.loads(Path("r.sarif").read_text())
     traces = {result["properties"]["trace"] for result in sarif["runs"][0]["results"]}
-    assert traces == {"bad.csv", "torn.csv"}
+    assert traces == {"2 recordings together", "bad.csv", "torn.csv"}
     page = Path("r.html").read_text()
-    assert page.count("<article") == 2
+    assert page.count("<article") == 3
     assert 'href="#run-1"' in page
     assert 'id="run-1"' in page
-    assert Path("r.txt").read_text().count("sha256") == 2
+    assert Path("r.txt").read_text().count("sha256") == 3
     capsys.readouterr()
 
 

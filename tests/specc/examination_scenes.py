@@ -86,7 +86,7 @@ def diagnosis(word: str = "") -> Diagnosis:
         origin="husky_drive.yaml:30:1",
     )
     differing = RegionMean(
-        {"heading": (0.2, 0.4)}, None, None, 11, 0.03, Interval(0.02, 0.04), Standing.EXCEEDED
+        {"heading": (0.2, 0.4)}, {}, None, None, 11, 0.03, Interval(0.02, 0.04), Standing.EXCEEDED
     )
     return Diagnosis(
         told=Told.STRUCTURE_DIFFERS,

@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from runtime.arrays import frozen
 from runtime.program import Program
-from verifier.fidelity.judging.departure import CONFIDENCE
 from verifier.fidelity.recording import Recording
 from verifier.fidelity.switching.together import with_every_switching
-from verifier.fidelity.verify import Judgement, fidelity_of, judgement_of, report_on, spec_of
+from verifier.fidelity.verify import Judgement, judgement_of, report_on
 from verifier.report.report import Report, TraceIdentity, Verdict
 from verifier.traces.trace import Trace
 
@@ -50,10 +50,12 @@ def pooled(program: Program, judgements: Sequence[Judgement]) -> Report:
             kept.append(each.recording)
             switchings.append((each.report.trace.source, each.switching))
     if not kept:
-        return _nothing(program, judgements, left)
+        return _nothing(judgements, left)
     report = report_on(program, [_named(each) for each in kept])
-    report = replace(with_every_switching(report, switchings), trace=_identity(kept))
-    return _with_left_out(report, left)
+    report = with_every_switching(report, switchings)
+    return replace(
+        report, reasons=(*report.reasons, *left), trace=_identity([each.identity for each in kept])
+    )
 
 
 def _left_out(judgement: Judgement, kept: Sequence[Recording]) -> str:
@@ -86,46 +88,30 @@ def _named(recording: Recording) -> Recording:
     )
 
 
-def _identity(recordings: Sequence[Recording]) -> TraceIdentity:
-    every = [recording.identity for recording in recordings]
+def _identity(every: Sequence[TraceIdentity]) -> TraceIdentity:
+    """The name of all, with their lengths added."""
     return TraceIdentity(
-        source=_counted(len(every)),
+        source="1 recording" if len(every) == 1 else f"{len(every)} recordings together",
         start=min(each.start for each in every),
         duration=sum(each.duration for each in every),
         judged=sum(each.judged for each in every),
     )
 
 
-def _counted(count: int) -> str:
-    return "1 recording" if count == 1 else f"{count} recordings together"
-
-
-def _with_left_out(report: Report, left: Sequence[str]) -> Report:
-    return replace(report, notes=(*report.notes, *left)) if left else report
-
-
-def _nothing(program: Program, judgements: Sequence[Judgement], left: Sequence[str]) -> Report:
-    """The report where no recording can be compared: that of the first, with all the reasons."""
-    first = judgements[0].report
+def _nothing(judgements: Sequence[Judgement], left: Sequence[str]) -> Report:
+    """The report where no recording can be compared: it says why of each."""
     advice = [sentence for each in judgements for sentence in each.report.advice]
-    every = [each.report.trace for each in judgements]
     return replace(
-        first,
+        judgements[0].report,
         verdict=Verdict.INCONCLUSIVE,
         reasons=("nothing can be compared in any of the recordings", *left),
         advice=tuple(dict.fromkeys(advice)),
-        confidence=CONFIDENCE,
         variables=(),
         coverage=None,
         exclusions=(),
         losses=(),
         notes=(),
-        spec=spec_of(program),
-        trace=TraceIdentity(
-            source=_counted(len(every)),
-            start=min(each.start for each in every),
-            duration=sum(each.duration for each in every),
-            judged=0.0,
-        ),
-        horizon=fidelity_of(program).horizon,
+        trace=replace(_identity([each.report.trace for each in judgements]), judged=0.0),
+        starts=frozen([]),
+        places={},
     )

@@ -2,12 +2,13 @@
 
 A test suite is a trace, a test case one requirement of the spec: a `failure` where the robot is
 shown to break it, an `error` where the trace does not decide (a build must not turn green on
-that), or where the trace can't be used at all. Valid against the schema of Jenkins' xUnit plugin
-(junit-10.xsd), whose `file` and `line` of a test case GitLab shows as well.
+that), or where the trace can't be used at all. What a trace leaves open that is judged together
+with others is `skipped`: then the suite of all together decides. Valid against the schema of
+Jenkins' xUnit plugin (junit-10.xsd), whose `file` and `line` of a test case GitLab shows as well.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from datetime import UTC, datetime
 from typing import Final
 from xml.etree import ElementTree as ET
@@ -24,10 +25,15 @@ YEAR: Final = 365.25 * 86400.0
 
 
 def as_junit(
-    examinations: Sequence[Examination], unusable: Sequence[tuple[str, str]] = ()
+    examinations: Sequence[Examination],
+    unusable: Sequence[tuple[str, str]] = (),
+    parts: Collection[Examination] = (),
 ) -> bytes:
-    """All traces as one document; `unusable` are those without a report, `(source, why)`."""
-    suites = [_suite(each) for each in examinations]
+    """All traces as one document; `unusable` are those without a report, `(source, why)`.
+
+    parts: those examinations that are also judged together, as another one of them.
+    """
+    suites = [_suite(each, is_part=each in parts) for each in examinations]
     suites += [_unusable(source, why) for source, why in unusable]
     root = ET.Element("testsuites", {"name": "specc verify", **_counts(suites)})
     root.extend(suites)
@@ -36,9 +42,9 @@ def as_junit(
     return document + b"\n"
 
 
-def _suite(examination: Examination) -> ET.Element:
+def _suite(examination: Examination, *, is_part: bool) -> ET.Element:
     report = examination.report
-    cases = [_case(each, report) for each in requirements_of(examination)]
+    cases = [_case(each, report, is_part=is_part) for each in requirements_of(examination)]
     attributes = {"name": clean(report.trace.source), **_counted(cases)}
     start = report.trace.start
     if YEAR < start < 200.0 * YEAR:
@@ -62,11 +68,13 @@ def _properties(report: Report) -> ET.Element:
     return properties
 
 
-def _case(requirement: Requirement, report: Report) -> ET.Element:
+def _case(requirement: Requirement, report: Report, *, is_part: bool) -> ET.Element:
     case = _bare_case(requirement.name, report.spec.name, requirement.origin)
     outcome = {Standing.EXCEEDED: "failure", Standing.UNDECIDED: "error"}
-    if requirement.standing in outcome:
-        lines = clean(requirement.message).splitlines() or [""]
+    lines = clean(requirement.message).splitlines() or [""]
+    if is_part and requirement.standing is Standing.UNDECIDED:
+        ET.SubElement(case, "skipped", {"message": lines[0]})
+    elif requirement.standing in outcome:
         attributes = {"message": lines[0], "type": str(requirement.standing)}
         told = ET.SubElement(case, outcome[requirement.standing], attributes)
         told.text = "\n".join([*lines, requirement.origin]).strip()
@@ -97,7 +105,9 @@ def _counted(cases: Sequence[ET.Element]) -> dict[str, str]:
     """The counts of one suite."""
     found = {name: sum(c.find(name) is not None for c in cases) for name in ("failure", "error")}
     failures, errors = str(found["failure"]), str(found["error"])
-    return {"tests": str(len(cases)), "failures": failures, "errors": errors, "time": "0"}
+    skipped = sum(case.find("skipped") is not None for case in cases)
+    counts = {"tests": str(len(cases)), "failures": failures, "errors": errors, "time": "0"}
+    return counts | ({"skipped": str(skipped)} if skipped else {})
 
 
 def _counts(suites: Sequence[ET.Element]) -> dict[str, str]:
