@@ -1,7 +1,7 @@
 """Robots with one departure planted into each, made by a solver of their own.
 
-Each builder gives a trace; classical Runge-Kutta steps far below the sample period, delays and
-lags by the method of steps, commands held.
+Each builder gives a trace; steps far below the sample period, delays and lags by the method of
+steps, commands held.
 """
 
 from collections.abc import Callable
@@ -53,7 +53,7 @@ def beyond(value: float, zone: float) -> float:
 def marched(
     rates: Callable[[float, Array], Array], start: Array, seconds: float
 ) -> tuple[Array, Array]:
-    """Times (T,) at 20 Hz and states (T, n)."""
+    """Times (T,) at 20 Hz and states (T, n), by Heun's rule; commands are held over each step."""
     h = 1.0 / (RATE * FINE)
     count = round(seconds * RATE)
     x, found = start, np.empty((count, len(start)))
@@ -62,7 +62,7 @@ def marched(
             found[k // FINE] = x
         t = k * h
         a = rates(t, x)
-        b = rates(t + h, x + h * a)
+        b = rates(t, x + h * a)
         x = x + 0.5 * h * (a + b)
     return np.arange(count) / RATE, found
 

@@ -8,52 +8,63 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.program import Fidelity
 from verifier.fidelity.shooting.study import Study
-from verifier.fidelity.stretches.needs import Needs
+from verifier.fidelity.stretches.spans import contains
 from verifier.report.wording import seconds
 from verifier.traces.trace import Series, Trace
 
-MOST_HORIZONS: Final = 40.0
-"""Longer traces catch hardly smaller faults: what is shown must exceed the tolerance anyway."""
+MOST_WINDOWS: Final = 79
+"""Of 40 horizons: longer traces catch hardly smaller faults, which must exceed the tolerance."""
 MOST_SAMPLES: Final = 10_000
-"""Of all series together, unless that would be less than the fewest horizons."""
-FEWEST_HORIZONS: Final = 20.0
+"""Of all series together, unless that would be less than the fewest windows."""
+FEWEST_WINDOWS: Final = 39
+MOVED: Final = 10.0
 
 
 def excerpt_of(trace: Trace, fidelity: Fidelity, study: Study) -> tuple[Trace, str]:
-    """The part of the trace with the most motion, and a sentence on it; empty if it is all."""
-    first, last = study.segments.whole
-    kept = _duration(study.plan.needs, fidelity.horizon, last - first)
-    if kept >= last - first:
+    """The part of the trace with the most motion, and a sentence on it; empty if it is all.
+
+    It is as long as it takes to hold enough windows: those of a robot that is judged now and then
+    only are far apart.
+    """
+    windows = study.plan.windows
+    kept = _affordable(study)
+    if kept >= len(windows.times):
         return trace, ""
-    start = _liveliest(fidelity, study, kept)
-    series = {name: _part(each, start, start + kept) for name, each in trace.series.items()}
+    first = _liveliest(fidelity, study, kept)
+    start, end = windows.times[first], windows.times[first + kept - 1] + windows.horizon
+    series = {name: _part(each, start, end) for name, each in trace.series.items()}
+    begin, finish = study.segments.whole
     told = (
-        f"faults were planted into {seconds(kept)} of the {seconds(last - first)} only"
-        f" (from {seconds(start - first)} on, where most moves); the whole trace may show"
+        f"faults were planted into {seconds(end - start)} of the {seconds(finish - begin)} only"
+        f" (from {seconds(start - begin)} on, where most moves); the whole trace may show"
         " smaller ones"
     )
     return replace(trace, series=series), told
 
 
-def _duration(needs: Needs, horizon: float, whole: float) -> float:
+def _affordable(study: Study) -> int:
+    """How many windows."""
+    needs, spans = study.plan.needs, study.segments.spans
     series = [*needs.series, *(each.series for each in needs.inputs if each.series is not None)]
-    rate = sum(len(each.times) for each in series) / max(whole, 1e-300)
-    affordable = max(MOST_SAMPLES / max(rate, 1e-300), FEWEST_HORIZONS * horizon)
-    return float(min(affordable, MOST_HORIZONS * horizon))
+    samples = sum(int(np.sum(contains(spans, each.times))) for each in series)
+    share = MOST_SAMPLES / max(samples, 1)
+    return min(max(int(share * len(study.plan.windows.times)), FEWEST_WINDOWS), MOST_WINDOWS)
 
 
-def _liveliest(fidelity: Fidelity, study: Study, kept: float) -> float:
-    """Where the windows of the next `kept` seconds move most, in tolerances."""
-    times = study.plan.windows.times
-    way = np.zeros(len(times))
+def _liveliest(fidelity: Fidelity, study: Study, kept: int) -> int:
+    """The first of the `kept` windows in which states move and inputs change most, in tolerances.
+
+    No window counts for more than ten tolerances of way, or than one that a late input would make.
+    """
+    way = np.zeros(len(study.plan.windows.times))
     for j, each in enumerate(study.plan.samples):
         if each.state.name in fidelity.tolerance:
-            moved = np.abs(study.shots.errors[-1][j].moved)
-            way += np.minimum(np.nan_to_num(moved) / fidelity.tolerance[each.state.name], 10.0)
+            errors, allowed = study.shots.errors[-1][j], fidelity.tolerance[each.state.name]
+            for effect, most in ((errors.moved, MOVED), (errors.hurried, 1.0)):
+                there = np.abs(np.nan_to_num(effect)) / allowed
+                way += np.minimum(there, most) / most
     total = np.concatenate([[0.0], np.cumsum(way)])
-    ends = np.searchsorted(times, times + kept)
-    best = int(np.argmax(total[ends] - total[:-1]))
-    return float(min(times[best], study.segments.whole[1] - kept))
+    return int(np.argmax(total[kept:] - total[:-kept]))
 
 
 def _part(series: Series, start: float, end: float) -> Series:

@@ -4,15 +4,16 @@ Sizes are a ladder of equal ratios around the size whose effect at the horizon i
 tolerance, so that a few rungs up or down is where the verdict turns.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
 
 from runtime.arrays import Array
 from runtime.program import Control, Fidelity, Kind, Program, State, Unit
+from verifier.fidelity.shooting.prediction import Model, predict
 from verifier.fidelity.shooting.study import Study
-from verifier.fidelity.stretches.needs import Input, names_read, parts_of
+from verifier.fidelity.stretches.needs import Input, held, names_read, parts_of
 from verifier.report.limits import Fault
 
 RATIO: Final = 1.25
@@ -24,6 +25,10 @@ LARGEST_GAIN: Final = 1.0
 """A rate that is doubled, or that is not there at all."""
 FEW_CHANGES: Final = 2
 """An input that changes less often has no delay to speak of."""
+DELAY: Final = 0.02
+"""What a delay does is foretold from one of this share of the horizon,"""
+LEAST_DELAY: Final = 1e-3
+"""and no guess is below this share of it."""
 SECOND: Final = Unit("s", 1.0)
 PER_CENT: Final = Unit("%", 0.01)
 
@@ -56,7 +61,7 @@ def faults_of(program: Program, fidelity: Fidelity, study: Study) -> tuple[Plann
     planned = [each for pair in found for each in pair]
     planned += [_of_sensor(program, fidelity, state, j) for j, state in enumerate(driven)]
     for i, each in enumerate(study.plan.needs.inputs):
-        planned += _of_input(program, study, each, i)
+        planned += _of_input(program, fidelity, study, each, i)
     return tuple(planned)
 
 
@@ -95,7 +100,9 @@ def _of_sensor(program: Program, fidelity: Fidelity, state: State, j: int) -> Pl
     return _planned(Fault.SENSOR, state, state.unit, j, guess, width / 4.0, can_act=can_act)
 
 
-def _of_input(program: Program, study: Study, given: Input, i: int) -> list[Planned]:
+def _of_input(
+    program: Program, fidelity: Fidelity, study: Study, given: Input, i: int
+) -> list[Planned]:
     """A delay of a measured input; of a sensed-only one also an offset of its sensor."""
     part = parts_of(program)[given.name]
     if given.series is None or (isinstance(part, State) and part.kind is Kind.DISCRETE):
@@ -103,14 +110,43 @@ def _of_input(program: Program, study: Study, given: Input, i: int) -> list[Plan
     found = []
     if np.count_nonzero(np.diff(given.series.values)) >= FEW_CHANGES:
         horizon = study.plan.windows.horizon
-        delay = _planned(Fault.DELAY, part, SECOND, i, horizon / 10.0, horizon, is_input=True)
-        found.append(delay)
+        guess = _telling_delay(fidelity, study, given, i)
+        found.append(_planned(Fault.DELAY, part, SECOND, i, guess, horizon, is_input=True))
     if isinstance(part, State):
         width = part.high - part.low
         found.append(
             _planned(Fault.SENSOR, part, part.unit, i, width / 50.0, width / 4.0, is_input=True)
         )
     return found
+
+
+def _telling_delay(fidelity: Fidelity, study: Study, given: Input, i: int) -> float:
+    """The delay of an input that moves some prediction by about its tolerance.
+
+    Larger ones are told less surely where the input changes often: what it does then looks like
+    chance. So the search has to begin there.
+    """
+    assert given.series is not None, "what comes late was measured"
+    plan, horizon = study.plan, study.plan.windows.horizon
+    late = DELAY * horizon
+    inputs = np.array(plan.model.grid.inputs)
+    inputs[:, i] = np.clip(held(given.series, plan.model.grid.times - late), given.low, given.high)
+    models = plan.model, Model(plan.model.flow, replace(plan.model.grid, inputs=inputs))
+    windows = plan.windows
+    rows, ends = np.arange(len(windows.times)), windows.last - windows.first
+    plain, moved = (
+        predict(model, study.shots.start, windows.first, windows.last)[rows, ends]
+        for model in models
+    )
+    found = [_typical(moved[:, s.column] - plain[:, s.column]) for s in plan.samples]
+    shares = [f / _allowed(fidelity, study, j) for j, f in enumerate(found)]
+    return float(np.clip(late / max(*shares, 1e-9), LEAST_DELAY * horizon, horizon))
+
+
+def _typical(moved: Array) -> float:
+    """The root mean square (W,) of what stayed in the domain."""
+    kept = moved[np.isfinite(moved)]
+    return float(np.sqrt(np.mean(kept**2))) if len(kept) else 0.0
 
 
 def _planned(  # one row of a table
@@ -146,10 +182,7 @@ def _allowed(fidelity: Fidelity, study: Study, j: int) -> float:
 
 def _speed(study: Study, j: int) -> float:
     """The root mean square rate of a predicted state, from its way over the horizon."""
-    moved = study.shots.errors[-1][j].moved
-    kept = moved[np.isfinite(moved)]
-    rms = float(np.sqrt(np.mean(kept**2))) if len(kept) else 0.0
-    return rms / study.plan.windows.horizon
+    return _typical(study.shots.errors[-1][j].moved) / study.plan.windows.horizon
 
 
 def _width(program: Program, name: str) -> float:

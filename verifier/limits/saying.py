@@ -1,24 +1,47 @@
 """What the self-test found, in words."""
 
+from typing import Final, TypeAlias
+
 import numpy as np
 
 from verifier.limits.faults import Planned
 from verifier.report.limits import Caught, Fault, Trial
+from verifier.report.report import Verdict
 from verifier.report.wording import listed, quantity
+
+Sides: TypeAlias = tuple[Verdict, Verdict]
+"""The verdicts on a fault planted as too much, and as too little."""
+
+WORDS: Final = {
+    Fault.GAIN: ("too high", "too low"),
+    Fault.OFFSET: ("up", "down"),
+    Fault.DELAY: ("later", "earlier"),
+    Fault.SENSOR: ("too much", "too little"),
+}
 
 
 def said(
     planned: Planned,
-    missed: int | None,
-    caught: int | None,
+    rungs: tuple[int | None, int | None],
     trials: tuple[Trial, ...],
     shown_by: tuple[str, ...],
+    largest_of_all: Sides | None = None,
 ) -> Caught:
-    """The finding on one fault: the rungs of its ladder that were missed and caught, if any."""
+    """The finding on one fault.
+
+    rungs: of its ladder, the one that was missed and the one that was caught, if any.
+    largest_of_all: the verdicts on the largest fault, where it was not caught in both directions.
+    """
+    missed, caught = rungs
     smallest = np.inf if caught is None else float(planned.sizes[caught])
     largest = 0.0 if missed is None else float(planned.sizes[missed])
     if not planned.can_act:
         largest = np.inf
+    sentence = (
+        _untold(planned, largest, largest_of_all)
+        if caught is None
+        else _told(planned, smallest, largest, shown_by)
+    )
     return Caught(
         fault=planned.fault,
         variable=planned.variable,
@@ -27,36 +50,43 @@ def said(
         largest=largest,
         trials=trials,
         shown_by=shown_by,
-        sentence=_sentence(planned, smallest, largest, shown_by),
+        sentence=sentence,
         origin=planned.origin,
     )
 
 
-def _sentence(planned: Planned, smallest: float, largest: float, shown_by: tuple[str, ...]) -> str:
-    name = planned.variable
+def _untold(planned: Planned, largest: float, sides: Sides | None) -> str:
+    name, words = planned.variable, WORDS[planned.fault]
     if not planned.can_act:
-        return (
-            f"no constant error of the sensor of {name} could be caught: the field does not read"
-            f" {name}, so every value of it is as good as another"
-        )
-    if not np.isfinite(smallest):
-        return f"not even {_fault(planned, largest)} would have been caught"
+        return f"no constant error of the sensor of {name} shows: the field does not read {name}"
+    if sides is not None and Verdict.FAIL in sides:
+        missed = 1 if sides[0] is Verdict.FAIL else 0
+        one = _fault(planned, largest, words[missed])
+        return f"not even {one} would have been caught; {words[1 - missed]}, it would"
+    said = f"not even {_fault(planned, largest, ' or '.join(words))} would have been caught"
+    passes = sides is None or Verdict.PASS in sides
+    return said if passes else f"{said}, though it would not have passed"
+
+
+def _told(planned: Planned, smallest: float, largest: float, shown_by: tuple[str, ...]) -> str:
+    name = planned.variable
     others = [each for each in shown_by if each != name]
     by = f" (by {listed(others)})" if others and name not in shown_by else ""
     beside = (
         f", {quantity(largest, planned.unit)} not" if largest > 0.0 else " (none smaller tried)"
     )
-    return f"{_fault(planned, smallest)} would have been caught{by}{beside}"
+    words = " or ".join(WORDS[planned.fault])
+    return f"{_fault(planned, smallest, words)} would have been caught{by}{beside}"
 
 
-def _fault(planned: Planned, size: float) -> str:
+def _fault(planned: Planned, size: float, direction: str) -> str:
     name, much = planned.variable, quantity(size, planned.unit)
     match planned.fault:
         case Fault.GAIN:
-            return f"a rate of {name} {much} too high or too low"
+            return f"a rate of {name} {much} {direction}"
         case Fault.OFFSET:
-            return f"a rate of {name} that is off by a constant {much}"
+            return f"a rate of {name} off by a constant {much} {direction}"
         case Fault.DELAY:
-            return f"a robot that acts on {name} {much} later or earlier than logged"
+            return f"a robot that acts on {name} {much} {direction} than logged"
         case Fault.SENSOR:
-            return f"a sensor that shows {much} too much or too little of {name}"
+            return f"a sensor that shows {much} {direction} of {name}"

@@ -83,7 +83,7 @@ def _searched(
     found, first = [], 0
     for each in planned:
         trials = _Trials(program, trace, plantings, judge, first)
-        found.append(_caught(each, trials) if each.can_act else said(each, None, None, (), ()))
+        found.append(_caught(each, trials) if each.can_act else said(each, (None, None), (), ()))
         first += len(SIDES) * len(each.sizes) if each.can_act else 0
     return tuple(found)
 
@@ -103,6 +103,13 @@ class _Trials:
         """Whether a fault of this size FAILs, planted in either direction."""
         first = self._first + len(SIDES) * rung
         return all(self._fails(first + side) for side in range(len(SIDES)))
+
+    def sides(self, rung: int) -> tuple[Verdict, Verdict]:
+        """The verdicts on a fault of this size, planted as too much and as too little."""
+        first = self._first + len(SIDES) * rung
+        for lane in (first, first + 1):
+            self._fails(lane)
+        return self.reports[first].verdict, self.reports[first + 1].verdict
 
     def expected(self, rung: int) -> int:
         """Where the verdict should turn, from the figures at a rung that was judged.
@@ -148,6 +155,9 @@ def exceeded(report: Report) -> list[str]:
 
 
 def _caught(planned: Planned, trials: _Trials) -> Caught:
-    missed, caught = turning(trials.is_caught, trials.expected, planned.guess, len(planned.sizes))
-    shown_by = () if caught is None else trials.shown_by(caught)
-    return said(planned, missed, caught, trials.tried(), shown_by)
+    last = len(planned.sizes) - 1
+    rungs = turning(trials.is_caught, trials.expected, planned.guess, last + 1)
+    if rungs[1] is None:
+        sides = trials.sides(last)
+        return said(planned, rungs, trials.tried(), (), sides)
+    return said(planned, rungs, trials.tried(), trials.shown_by(rungs[1]))

@@ -8,7 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.program import Program
-from verifier.fidelity.verify import verify
+from verifier.fidelity.verify import judged, verify
+from verifier.limits.excerpt import excerpt_of
+from verifier.limits.faults import faults_of
 from verifier.limits.search import turning
 from verifier.limits.self_test import smallest_caught
 from verifier.report.limits import Caught, Fault
@@ -200,3 +202,55 @@ def test_a_long_trace_is_planted_into_where_most_moves(scenes: ModuleType) -> No
 
     assert "80 s of the 135 s" in notes[0]
     assert min(copy.series["x"].times[0] for copy in seen) > 44.0
+
+
+def test_what_is_caught_in_one_direction_only_is_told_for_the_other(scenes: ModuleType) -> None:
+    """A copy fails wherever its x was made larger than it was."""
+    program, trace = scenes.van_der_pol(), scenes.van_der_pol_drive(1, 20.0, 0.01)
+    report = verify(program, trace)
+    failing = verify(scenes.van_der_pol("1.5"), scenes.van_der_pol_drive(1, 60.0, 0.01))
+    mean = np.mean(trace.series["x"].values)
+
+    def judge(_program: Program, copy: Trace) -> Report:
+        return failing if np.mean(copy.series["x"].values) > mean + 1e-9 else report
+
+    found, _ = smallest_caught(program, trace, report, judge)
+
+    sentence = of(found, Fault.SENSOR, "x").sentence
+    assert sentence.startswith("not even a sensor that shows")
+    assert sentence.endswith("too little of x would have been caught; too much, it would")
+
+
+def test_the_search_for_a_delay_begins_where_it_shows_first(scenes: ModuleType) -> None:
+    """Turn rates jump by 0.57 rad/s, root mean square: late by s, a window ends 0.57 s rad off.
+
+    Much later ones look like chance, so a search from there would miss those in between.
+    """
+    program, trace = scenes.unicycle(), scenes.unicycle_drive(1, 40.0, 0.005)
+    _, study = judged(program, trace)
+    assert program.fidelity is not None
+    assert study is not None
+
+    planned = faults_of(program, program.fidelity, study)
+
+    (turn,) = (p for p in planned if (p.fault, p.variable) == (Fault.DELAY, "turn"))
+    allowed = program.fidelity.tolerance["heading"]
+    # Within a factor of two: of x and y it may show even earlier, and sizes stand on a ladder.
+    assert 0.5 < turn.sizes[turn.guess] / (allowed / 0.57) < 2.0
+
+
+def test_windows_that_are_far_apart_are_taken_together(scenes: ModuleType) -> None:
+    """An oscillator that is logged for 5 s of every 25, three windows each: all are taken."""
+    program = scenes.van_der_pol()
+    assert program.fidelity is not None
+    whole = scenes.van_der_pol_drive(1, 500.0, 0.01)
+    kept = whole.series["x"].times % 25.0 < 5.0
+    series = [scenes.series(n, s.times[kept], s.values[kept]) for n, s in whole.series.items()]
+    trace = scenes.trace(*series)
+    _, study = judged(program, trace)
+    assert study is not None
+
+    part, note = excerpt_of(trace, program.fidelity, study)
+
+    assert len(study.plan.windows.times) == 20 * 3
+    assert (part, note) == (trace, "")
