@@ -125,12 +125,18 @@ def about_variable(report: Report, variable: VariableResult) -> tuple[str, ...]:
 
 def about_region(report: Report, variable: VariableResult, region: RegionMean) -> str:
     """Where the mean error is largest, and how large it is there."""
-    where = ", ".join(
+    places = [f"{name} {value}" for name, value in region.values.items()]
+    places += [
         f"{name} in {ranged(Interval(*ends), report.units.get(name, Unit('1', 1.0)))}"
         for name, ends in region.bounds.items()
-    )
+    ]
+    if region.moved is not None:
+        places.append(f"moves of {quantity(region.moved, variable.unit)}")
+    if region.hurried is not None:
+        places.append(f"what drives it {'rising' if region.hurried > 0.0 else 'falling'}")
+    where = f"for {', '.join(places)}" if places else "everywhere"
     return (
-        f"The mean error is largest for {where}: {quantity(region.mean, variable.unit)}"
+        f"The mean error is largest {where}: {quantity(region.mean, variable.unit)}"
         f" ({ranged(region.interval, variable.unit)}, {region.windows} windows,"
         f" {region.standing})."
     )

@@ -111,5 +111,6 @@ def still(after: DepartureAfter) -> str:
 
 def where(name: str, region: RegionMean, units: dict[str, Unit]) -> str:
     """`heading differs from 0.2 to 0.4 rad of heading`."""
-    parts = [f"{key} {span(*ends, units[key])}" for key, ends in region.bounds.items()]
+    parts = [f"{key} is {value}" for key, value in region.values.items()]
+    parts += [f"{key} {span(*ends, units[key])}" for key, ends in region.bounds.items()]
     return f"{name} still differs where {listed(parts)}" if parts else f"{name} still differs"
