@@ -20,8 +20,8 @@ from verifier.topology.portrait import Detail
 from verifier.topology.portrait import portrait as look
 from verifier.topology.slices import SliceError
 
-FULL: Final = Detail(basins=48)
-"""Everything, with the basins of attraction in cells of a 48th of each axis."""
+FULL: Final = Detail(basins=96)
+"""Everything, with the basins of attraction in cells of a 96th of each axis, as claims have it."""
 
 SMALL: Final = Detail(trajectories=2, basins=48)
 """For one of many panels."""

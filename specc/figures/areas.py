@@ -16,7 +16,7 @@ from specc.figures.panel import Panel
 from verifier.topology.features import AxisRange, Portrait
 from verifier.topology.names import attractor_tags
 
-FINER: Final = 12
+FINER: Final = 8
 """Each cell of the basins is drawn as so many squared, its edge between the centres smoothed."""
 
 BLUR: Final = 0.8
@@ -40,7 +40,7 @@ CHIPS_ROOM: Final = 0.6
 RULED: Final = 2
 """The tint whose colour hatching has: darker than the grounds, lighter than the field."""
 
-PERIOD: Final = 18
+PERIOD: Final = 24
 """Of a hatching, in finer cells."""
 
 LINE: Final = 3

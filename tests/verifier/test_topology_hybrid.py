@@ -1,6 +1,7 @@
 """Cycles through modes: period laws, closed forms, an independent return map, chattering."""
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -257,6 +258,18 @@ def test_a_bouncing_ball_comes_to_rest_by_chattering() -> None:
     assert any("leave the domain" in note for note in notes)
     [place] = rests
     assert place == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_a_cycle_jumps_only_where_a_mode_is_left_and_closes_after_the_jump() -> None:
+    [cycle] = portrait(PATROL, held={"x1": 1.0}).cycles
+    steps = np.abs(np.diff(cycle.points, axis=0)) / [4.0, 2.0]
+    jumps = np.flatnonzero(steps.max(axis=-1) > 0.1)
+
+    assert len(jumps) == 2
+    assert np.diff(cycle.times)[jumps] == pytest.approx(0.0, abs=1e-9)
+    assert [cycle.modes[k] != cycle.modes[k + 1] for k in jumps] == [True, True]
+    assert sum(a != b for a, b in pairwise(cycle.modes)) == 2
+    np.testing.assert_allclose(cycle.points[-1], cycle.points[0], atol=1e-9)
 
 
 def test_a_zero_of_a_mode_that_is_left_before_is_no_fixed_point() -> None:

@@ -41,6 +41,8 @@ SAME: Final = 2e-3
 SAMPLES: Final = 256
 LONGER: Final = 1.01
 """Rounds that are followed, so that the switch that closes the cycle is among those seen."""
+AT_ONCE: Final = 1e-9
+"""Times of a round that differ by less than this share of its period are one."""
 NEUTRAL: Final = 1e-6
 AGREEMENT: Final = 1e-4
 """Multipliers by two methods that differ by more than this share are doubtful."""
@@ -265,11 +267,18 @@ def _closing(hybrid: Hybrid, points: Array, exact: Closed) -> Array:
 def _drawn(
     ran: Trajectories, clock: Array, start: Array, switches: Switches, exact: Closed
 ) -> tuple[Array, Array]:
-    """Times (T,) and states (T, n) of a round: samples, and both sides of every switch."""
-    times = np.concatenate([clock, switches.times, switches.times, [exact.at.period]])
-    sampled = ran.states[0, : len(clock)]
+    """Times (T,) and states (T, n) of a round: samples, and both sides of every switch.
+
+    Samples at the very time of a switch may be of either side, by rounding, and are left out.
+    """
+    period = exact.at.period
+    gaps = np.abs(clock[1:, None] - switches.times)
+    kept = np.concatenate([[True], np.all(gaps > AT_ONCE * period, axis=-1)])
+    switched = np.minimum(switches.times, period)
+    times = np.concatenate([clock[kept], switched, switched, [period]])
+    sampled = ran.states[0, : len(clock)][kept]
     states = np.concatenate([sampled, switches.before, switches.after, start[None]])
-    rank = np.repeat([0, 1, 2, 3], [len(clock), len(switches), len(switches), 1])
+    rank = np.repeat([0, 1, 2, 3], [len(sampled), len(switches), len(switches), 1])
     order = np.lexsort((rank, times))
     return times[order], states[order]
 
