@@ -1,10 +1,15 @@
-"""Fixtures for all tests: golden files."""
+"""Fixtures for all tests: golden files. And one thread for each of them."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
 import pytest
+
+# Before numpy is loaded: on small matrices threads of BLAS only wait for one another.
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
 
 Expect: TypeAlias = Callable[[Path, str], None]
 

@@ -5,6 +5,10 @@ Little is imported here, so that hardly anything comes before `entry`, which kno
 
 import sys
 
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""What numpy reads when it is loaded: on small matrices threads of BLAS only wait for each other,
+and on a busy machine that makes a command five to ten times slower."""
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,6 +21,8 @@ def main(arguments: "Sequence[str] | None" = None) -> int:
 
     # Looking for pydantic's plugins costs a tenth of a second, and we have none.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             # A terminal that can't show a letter gets a question mark, never a traceback.
