@@ -44,8 +44,9 @@ schema: .venv/ready ## rewrite the JSON Schemas in docs/schema
 gallery: .venv/ready ## draw docs/img and docs/gallery.md
 	$(BIN)/python docs/draw_gallery.py
 
-study: .venv/ready ## which departure is planted, and which the diagnosis names
-	$(BIN)/python -m tests.study.diagnosis
+study: study-verify ## error rates, which departures the diagnosis names, refitted gains
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.diagnosis 4
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.gains 30
 
 study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with planted departures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.verdicts

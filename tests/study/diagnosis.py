@@ -84,6 +84,11 @@ def _of_wall() -> tuple[Row, ...]:
         _wall(Wall(late=0.3), f"dead time of {turning}", words="dead time 0.3 s"),
         _wall(Wall(lag=0.3), f"lag of {turning}", words="lag 0.3 s"),
         _wall(Wall(logged_late=0.3), "late log of wanted", words="command logged 0.3 s late"),
+        _wall(
+            Wall(patch=0.4),
+            f"offset of {turning} at large distance",
+            words="turns 0.4 rad/s more beyond 0.85 m",
+        ),
         _misread(
             FOLLOW,
             lambda t: p.scaled(t, "heading", -1.0),
@@ -207,13 +212,13 @@ def main(seeds: int) -> None:
     """Print the table."""
     programs = {row.spec: program_of(row.spec) for row in rows()}
     right = total = 0
-    _say(f"{'planted':30} {'in':18} {'right':>9}  named first")
+    _say(f"{'planted':34} {'in':18} {'right':>9}  named first")
     for row in rows():
         found = [diagnosed(programs[row.spec], row.made(seed)) for seed in range(seeds)]
         hits = sum(is_right(row, each) for each in found)
         firsts = Counter((named(each) or (str(each.told),))[0] for each in found)
         told = ", ".join(f"{name} {count}" for name, count in firsts.most_common(3))
-        _say(f"{row.planted:30} {row.spec:18} {hits:4}/{seeds:<4}  {told}")
+        _say(f"{row.planted:34} {row.spec:18} {hits:4}/{seeds:<4}  {told}")
         right, total = right + hits, total + seeds
     _say(f"right: {right} of {total}, {100.0 * right / total:.1f} %")
 

@@ -18,7 +18,10 @@ RATE = 20.0
 
 @dataclass(frozen=True)
 class Wall:
-    """A wall follower: `wanted` jumps every 4 s. All are the spec's values."""
+    """A wall follower: `wanted` jumps every 4 s. All are the spec's values.
+
+    bend: of the turn rate, times the heading's cube. patch: added to it beyond 0.85 m only.
+    """
 
     speed: float = 0.4
     stiffness: float = 2.0
@@ -30,6 +33,8 @@ class Wall:
     late: float = 0.0
     lag: float = 0.0
     logged_late: float = 0.0
+    bend: float = 0.0
+    patch: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -78,7 +83,9 @@ def wall(robot: Wall, seed: int, seconds: float = 60.0, noise: float = 1.0) -> T
     def turn(t: float, x: Array) -> float:
         now = wanted[min(int((t + 1e-9) // 4.0), len(wanted) - 1)]
         rate = -robot.stiffness * beyond(x[0] - now, robot.zone) - robot.damping * x[1]
-        return float(np.clip(robot.gain * rate + robot.offset, -robot.limit, robot.limit))
+        rate = robot.gain * rate + robot.offset
+        rate += robot.bend * x[1] ** 3 + robot.patch * (x[0] > 0.85)
+        return float(np.clip(rate, -robot.limit, robot.limit))
 
     def rates(t: float, x: Array) -> Array:
         asked = turn(t, x)

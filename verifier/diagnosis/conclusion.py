@@ -18,6 +18,8 @@ from verifier.report.report import Report, Standing
 
 SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
 
+CLEARLY: Final = 0.25
+"""A departure that is surely beyond this share of its tolerance is told, though it is allowed."""
 PARTLY: Final = 0.6
 """What explains less than this share of the error beyond noise is no explanation."""
 
@@ -57,9 +59,10 @@ def concluded(
             said.append(f"{_name(step.tried[0])}: {sentences.either(rivals)}")
     if selection.taken and share < PARTLY:
         said.append(sentences.partly(share))
-    said += [sentences.still(each) for each in after]
+    said += sentences.afterwards(after)
     said += [each.sentence for each in differs[:1] if departs or share < PARTLY]
-    said += [f"beside it, {each.sentence}" for each in moved if not each.is_moved]
+    beside = [each.sentence for each in moved if not each.is_moved]
+    said += [f"refitted beside it: {'; '.join(beside)}"] if beside else []
     return told, tuple(said)
 
 
@@ -108,8 +111,13 @@ def _unexplained(
     departs = [each for each in report.variables if each.standing is Standing.EXCEEDED]
     if not departs:
         text = "no difference that matters beside the tolerances was found"
-        return Told.NO_DIFFERENCE, (text,)
-    left = tuple(sentences.still(each) for each in after)
+        clear = [
+            sentences.within(each.name, each.declared.departure, each.tolerance, each.unit)
+            for each in report.variables
+            if each.declared.interval.low > CLEARLY * each.tolerance
+        ]
+        return Told.NO_DIFFERENCE, tuple(clear) or (text,)
+    left = sentences.afterwards(after)
     if differs:
         said = "the structure differs, and no candidate explains how"
         return Told.STRUCTURE_DIFFERS, (said, *(each.sentence for each in differs[:2]), *left)

@@ -14,6 +14,7 @@ from verifier.diagnosis.altered import Effect
 from verifier.diagnosis.candidates.clocks import effects_on_clocks
 from verifier.diagnosis.candidates.inputs import effects_on_inputs
 from verifier.diagnosis.candidates.rates import effects_on_rates
+from verifier.diagnosis.candidates.regions import effects_on_regions
 from verifier.diagnosis.conclusion import PARTLY, concluded, nothing_to_tell
 from verifier.diagnosis.parameters import effect_of, parameters_of
 from verifier.diagnosis.profiled import setting_of
@@ -25,7 +26,7 @@ from verifier.diagnosis.selection import CLEAR, Selection, select
 from verifier.fidelity.judging.evidence import evidence_of
 from verifier.fidelity.judging.judgement import results_of
 from verifier.fidelity.shooting.study import Study
-from verifier.report.diagnosis import Diagnosis
+from verifier.report.diagnosis import Diagnosis, Told
 from verifier.report.report import Report, Verdict
 from verifier.traces.trace import Trace
 
@@ -48,24 +49,28 @@ def diagnose(program: Program, trace: Trace, study: Study | None, report: Report
     scene = scene_of(program, study)
     if scene.windows < FEWEST:
         return nothing_to_tell(scene.windows)
-    selection = select(scene, effects_of(scene), fidelity.tolerance)
+    selection = select(scene, effects_of(scene, report.verdict), fidelity.tolerance)
     if report.verdict is Verdict.PASS and selection.share(scene) < PARTLY:
         selection = selection.without()
     best = _better_reading(program, fidelity, trace, scene, selection, report)
     if best is None:
         return _told(program, fidelity, scene, study, selection, report, None)
-    other = select(best.scene, effects_of(best.scene), fidelity.tolerance)
+    other = select(best.scene, effects_of(best.scene, report.verdict), fidelity.tolerance)
     return _told(program, fidelity, best.scene, best.study, other, report, best)
 
 
-def effects_of(scene: Scene) -> tuple[Effect, ...]:
-    """All that is tried, what is preferred among equals first."""
+def effects_of(scene: Scene, verdict: Verdict) -> tuple[Effect, ...]:
+    """All that is tried, what is preferred among equals first.
+
+    Parts of the region are looked at only where something is amiss: there are many.
+    """
     parameters = parameters_of(scene.program, scene.needs)
     return (
         *(effect_of(each) for each in parameters),
         *effects_on_inputs(scene),
         *effects_on_clocks(scene),
         *effects_on_rates(scene),
+        *(() if verdict is Verdict.PASS else effects_on_regions(scene)),
     )
 
 
@@ -74,7 +79,7 @@ def _of_unjudged(program: Program, fidelity: Fidelity, trace: Trace, report: Rep
     if not found or found[0].gain < CLEAR or found[0].scene.windows < FEWEST:
         return nothing_to_tell(0)
     best = found[0]
-    selection = select(best.scene, effects_of(best.scene), fidelity.tolerance)
+    selection = select(best.scene, effects_of(best.scene, report.verdict), fidelity.tolerance)
     return _told(program, fidelity, best.scene, best.study, selection, report, best)
 
 
@@ -119,4 +124,6 @@ def _told(
         found = (reading_of(program, best), *found)
     moved = told_of(numbers)
     told, sentences = concluded(selection, share, found, moved, after, differs, report)
+    if told is Told.NO_DIFFERENCE:
+        found = ()
     return Diagnosis(told, sentences, moved, after, found, differs)

@@ -25,6 +25,8 @@ from verifier.report.report import Interval, Report, Standing, VariableResult
 
 SHOWN: Final = 6
 """So many candidates that were not taken are reported."""
+WORTH: Final = 0.1
+"""If they explain more than this share of the error, and it matters beside the tolerances."""
 CLEARLY: Final = 0.25
 """A mean that is surely beyond this share of the tolerance makes a part differ."""
 
@@ -98,7 +100,8 @@ def candidates_of(scene: Scene, selection: Selection, confidence: float) -> tupl
     rest = selection.steps[-1].tried if not taken else taken[0].tried[1:]
     for tried in rest:
         other = _candidate(scene, selection, None, tried, (), confidence)
-        if other.label not in named and len(found) < len(taken) + SHOWN and tried.gain > 0.0:
+        is_new = other.label not in named and len(found) < len(taken) + SHOWN
+        if is_new and tried.matters and tried.gain > 0.0 and tried.share > WORTH:
             named.add(other.label)
             found.append(other)
     return tuple(found)

@@ -189,16 +189,16 @@ def _promising(scene: Scene, base: Fit, effects: tuple[Effect, ...]) -> list[Eff
     """Without those of which a linear forecast promises nothing; curved ones stay."""
     single = tuple(each for each in effects if len(each.numbers) == 1)
     together = tuple(each for each in single if not each.stands_in)
-    forecast = _forecasts(scene, base, together)
+    forecast = forecasts(scene, base, together)
     for each in single:
         if each.stands_in:  # it changes the prediction even where its number is neutral
-            forecast |= _forecasts(scene, base, (each,))
+            forecast |= forecasts(scene, base, (each,))
     bent = [each for each in single if np.isinf(forecast[each.label])]
     forecast |= {each.label: _best_start(scene, base, each) for each in bent}
     return [each for each in effects if forecast.get(each.label, np.inf) >= HINT]
 
 
-def _forecasts(scene: Scene, base: Fit, effects: tuple[Effect, ...]) -> dict[str, float]:
+def forecasts(scene: Scene, base: Fit, effects: tuple[Effect, ...]) -> dict[str, float]:
     """By label, the log-likelihood that each promises, from the slopes at neutral values."""
     values = (*base.values, *(value for each in effects for value in each.neutral))
     left = profiled(scene, (*base.effects, *effects), values, base.starts, base.sigma)

@@ -59,12 +59,13 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
     ]
     subject = effect.label.partition(" of ")[2] or names
     size = found[0] if found else ""
-    early = kind is CandidateKind.CLOCK_OFFSET and values[0] < 0.0
+    if kind is CandidateKind.REGION:
+        return _in_a_region(effect, numbers, size)
     said = {
         CandidateKind.DEAD_TIME: f"{subject} acts {size} later than the spec says",
         CandidateKind.LATE_LOG: f"the log tells {names} {size} late",
-        CandidateKind.CLOCK_OFFSET: f"the clock of {subject} is {size} "
-        f"{'behind' if early else 'ahead of'} that of the other topics",
+        CandidateKind.CLOCK_OFFSET: f"the stamps of {subject} are {size} "
+        f"{'early' if values and values[0] > 0.0 else 'late'} beside those of the other topics",
         CandidateKind.LAG: f"{subject} acts through a first-order lag of {size}",
         CandidateKind.SATURATION: f"{subject} saturates at {size}",
         CandidateKind.DEAD_ZONE: f"{subject} has a dead zone of {size} to either side",
@@ -74,6 +75,15 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
     if kind is CandidateKind.UNIT_SLIP:
         return f"{names} looks like {slip_of(values[0])}"
     return said[kind] if kind in said else of_scalar(effect, numbers[0])
+
+
+def _in_a_region(effect: Effect, numbers: tuple[FittedNumber, ...], size: str) -> str:
+    rate, name = effect.applies_to
+    side = "above" if " at large " in effect.label else "below"
+    way = "higher" if numbers[0].value > 0.0 else "lower"
+    edge = numbers[1]
+    border = f"{with_doubt(edge.value, edge.interval, edge.unit.scale)}{suffix(edge.unit)}"
+    return f"the rate of {rate} is {size} {way} where {name} is {side} {border}"
 
 
 def of_scalar(effect: Effect, found: FittedNumber) -> str:
@@ -100,13 +110,25 @@ def either(labels: list[str]) -> str:
     return f"this trace can't tell it from {' or '.join(shown)}{more}"
 
 
-def still(after: DepartureAfter) -> str:
-    """A variable that still departs."""
-    left = quantity(after.after, after.unit)
-    allowed = quantity(after.tolerance, after.unit)
-    if after.standing is Standing.EXCEEDED:
-        return f"{after.name} still departs by {left} (allowed {allowed})"
-    return f"{after.name} then departs by {left} (allowed {allowed})"
+def afterwards(after: tuple[DepartureAfter, ...]) -> tuple[str, ...]:
+    """What is left once all that was taken in, and all numbers that the trace tells, are fitted."""
+    over = [_left(each) for each in after if each.standing is Standing.EXCEEDED]
+    under = [_left(each) for each in after if each.standing is not Standing.EXCEEDED]
+    said = [f"even so {'; '.join(over)}: more than is allowed"] if over else []
+    return (*said, *([f"with that {'; '.join(under)}"] if under else []))
+
+
+def _left(after: DepartureAfter) -> str:
+    left, allowed = quantity(after.after, after.unit), quantity(after.tolerance, after.unit)
+    return f"{after.name} departs by {left} (allowed {allowed})"
+
+
+def within(name: str, departure: float, tolerance: float, unit: Unit) -> str:
+    """A variable that departs clearly, and may."""
+    return (
+        f"{name} departs by {quantity(departure, unit)}, which {quantity(tolerance, unit)} allow;"
+        " nothing that was tried explains it"
+    )
 
 
 def where(name: str, region: RegionMean, units: dict[str, Unit]) -> str:

@@ -53,7 +53,8 @@ class CandidateKind(StrEnum):
 
     DEAD_TIME: the robot answers to an input late. LATE_LOG: the log tells a series late (a
     `delay:` in `trace:` would mend it). CLOCK_OFFSET: all series of one topic, together. LAG: an
-    input acts through a first-order lag. PARAMETER: a number of the spec, alone.
+    input acts through a first-order lag. PARAMETER: a number of the spec, alone. REGION: a rate is
+    off where some variable is beyond a border.
     """
 
     PARAMETER = "parameter"
@@ -68,6 +69,7 @@ class CandidateKind(StrEnum):
     SIGN = "sign"
     SWAPPED_AXES = "swapped axes"
     UNIT_SLIP = "unit slip"
+    REGION = "in one region"
 
 
 @final
@@ -177,8 +179,8 @@ class Diagnosis:
     """Why the robot departs: the sentences say it, the numbers stand behind them.
 
     refitted: all numbers that this trace can tell, fitted together. after: departures after that
-    refit. candidates: best first, those that are named before all others. differs: where the
-    refitted spec still departs.
+    refit. candidates: best first, those that are named before all others; none where there is
+    nothing to explain. differs: where the refitted spec still departs.
     """
 
     told: Told

@@ -1,6 +1,6 @@
 """The sections of an examination as plain text: their sentences, and short tables beside them."""
 
-from verifier.report.diagnosis import Diagnosis
+from verifier.report.diagnosis import Diagnosis, FittedNumber
 from verifier.report.examination import Examination
 from verifier.report.features import FeatureNumber, Features
 from verifier.report.layout import INDENT, bullets, section, table
@@ -26,17 +26,25 @@ def section_texts(examination: Examination) -> tuple[str, ...]:
 
 
 def _diagnosis(diagnosis: Diagnosis) -> str:
+    others = [each for each in diagnosis.candidates if not each.is_taken][:MOST_CANDIDATES]
     rows = [
         (
             each.label,
-            ", ".join(f"{n.name} {quantity(n.value, n.unit)}" for n in each.numbers),
+            ", ".join(_number(n) for n in each.numbers),
             f"explains {percent(max(each.evidence.share, 0.0))} of what departs",
-            "named" if each.is_taken else "",
         )
-        for each in diagnosis.candidates[:MOST_CANDIDATES]
+        for each in others
     ]
-    title = f"why: {diagnosis.told}"
-    return section(title, [bullets(diagnosis.sentences), table(rows, INDENT)])
+    blocks = [bullets(diagnosis.sentences)]
+    if rows:
+        blocks.append(f"{INDENT}tried instead of the first:\n{table(rows, INDENT)}")
+    return section(f"why: {diagnosis.told}", blocks)
+
+
+def _number(each: FittedNumber) -> str:
+    """A delay without its sign: the label says late or early."""
+    value = abs(each.value) if each.name == "delay" else each.value
+    return f"{each.name} {quantity(value, each.unit)}"
 
 
 def _switching(switching: Switching) -> str:

@@ -49,7 +49,8 @@ def delay_of(
     inputs: tuple[str, ...], states: tuple[str, ...], label: str, horizon: float, origin: str
 ) -> Effect:
     """Inputs that act so many seconds later than logged; states seen so many seconds earlier."""
-    kind = CandidateKind.DEAD_TIME if len(inputs) + len(states) == 1 else CandidateKind.CLOCK_OFFSET
+    is_one = len(inputs) == 1 and not states
+    kind = CandidateKind.DEAD_TIME if is_one else CandidateKind.CLOCK_OFFSET
     number = Number("delay", SECOND, 0.0, 1e-3 * horizon, -horizon, horizon)
     starts = tuple((sign * share * horizon,) for share in SHIFTS for sign in (1.0, -1.0))
     apply = _Shift(inputs, states)
