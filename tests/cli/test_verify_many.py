@@ -1,7 +1,10 @@
 """`specc verify` of many recordings: a table, one report, one exit status."""
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -13,6 +16,8 @@ from scipy.integrate import solve_ivp
 import specc.runs
 from specc.cli import entry, main
 from specc.verifying import verify_by
+from tests.verifier.test_report_formats import SCHEMA, faults
+from verifier.report.report import Verdict
 
 SPECS = Path(__file__).parents[2] / "specs"
 VDP = str(SPECS / "van_der_pol.yaml")
@@ -25,6 +30,8 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     _record(folder / "good.csv", mu=1.0, seconds=60.0)
     _record(folder / "bad.csv", mu=2.0, seconds=60.0)
     _record(folder / "short.csv", mu=1.0, seconds=1.0)
+    for seed, start in enumerate([(1.9, 0.2), (0.3, -0.2), (-1.5, 2.0), (-0.2, 0.5), (1.0, -2.2)]):
+        _record(folder / f"brief{seed}.csv", mu=1.0, seconds=8.0, start=start, seed=seed)
     (folder / "torn.csv").write_text("")
     return folder
 
@@ -36,17 +43,23 @@ def recordings(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         shutil.copy(path, path.name)
 
 
-def _record(path: Path, mu: float, seconds: float) -> None:
+def _record(
+    path: Path,
+    mu: float,
+    seconds: float,
+    start: tuple[float, float] = (1.0, 0.0),
+    seed: int = 1,
+) -> None:
     times = np.arange(0.0, seconds, 0.05)
     found = solve_ivp(
         lambda _, s: [s[1], mu * (1.0 - s[0] ** 2) * s[1] - s[0]],
         (0.0, times[-1]),
-        [1.0, 0.0],
+        list(start),
         t_eval=times,
         rtol=1e-9,
         atol=1e-9,
     )
-    noise = 0.01 * np.random.default_rng(1).standard_normal(found.y.shape)
+    noise = 0.01 * np.random.default_rng(seed).standard_normal(found.y.shape)
     rows = np.column_stack([times, (found.y + noise).T, np.ones(len(times))])
     path.write_text("t,x,v,mu\n" + "\n".join(",".join(map(str, row)) for row in rows))
 
@@ -70,6 +83,81 @@ def test_one_fail_counts_and_else_the_verdict_on_all_together(
     traces: tuple[str, ...], status: int
 ) -> None:
     assert verify(*traces) == status
+
+
+def test_brief_recordings_decide_together_and_the_reports_say_so(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    brief = [f"brief{seed}.csv" for seed in range(5)]
+    assert [verify(name) for name in brief] == [4] * 5
+    capsys.readouterr()
+    outputs = [part for name in ("r.json", "r.xml") for part in ("-o", name)]
+
+    assert verify(*brief, *outputs) == 0
+
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("5 recordings together  PASS") for line in lines)
+    assert lines[-1] == "PASS  5 recordings: 5 inconclusive"
+    record = json.loads(Path("r.json").read_text())
+    assert record["verdict"] == "pass"
+    assert [each["verdict"] for each in record["together"]] == ["pass"]
+    assert record["together"][0]["recordings"] == brief
+    assert faults(record, SCHEMA) == []
+    suites = ET.fromstring(Path("r.xml").read_text())  # noqa: S314  our own
+    assert (suites.attrib["failures"], suites.attrib["errors"]) == ("0", "0")
+    assert [suite.attrib["name"] for suite in suites] == ["5 recordings together", *brief]
+    assert all(int(suite.attrib["skipped"]) > 0 for suite in suites[1:])
+
+
+def test_what_one_recording_leaves_open_is_a_note_where_all_decide(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    verify(*[f"brief{seed}.csv" for seed in range(5)], "--format", "github")
+
+    assert "::warning" not in capsys.readouterr().out
+
+
+def test_the_bar_tells_how_many_bytes_of_a_recording_are_read() -> None:
+    told: list[tuple[int, int]] = []
+
+    outcomes = specc.runs.verify_each(
+        ["good.csv"], VDP, only_verdict=True, reading=lambda done, whole: told.append((done, whole))
+    )
+
+    assert len(list(outcomes)) == 1
+    assert told
+    assert all(0 <= done <= whole for done, whole in told)
+
+
+def test_recordings_of_two_specs_are_not_put_together() -> None:
+    other = Path("other.yaml")
+    other.write_text(Path(VDP).read_text() + "\n# the same, but another file\n")
+    one = specc.runs.verify_together(["good.csv", "brief1.csv"], VDP, only_verdict=True)
+    mixed = [
+        *one.outcomes[:1],
+        *specc.runs.verify_each(["brief1.csv"], other, only_verdict=True),
+    ]
+
+    runs = specc.runs.runs_of(mixed)
+
+    assert len(one.pools) == 1
+    assert one.verdict is Verdict.PASS
+    assert runs.pools == ()
+    assert runs.verdict is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize("given", [None, "3"])
+def test_threads_of_blas_are_one_unless_the_user_says_otherwise(given: str | None) -> None:
+    program = "import os; from specc.cli import main; main(['--version']); "
+    program += "print(*(os.environ[n] for n in ('OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS')))"
+    kept = {name: value for name, value in os.environ.items() if not name.endswith("_THREADS")}
+    kept |= {} if given is None else {"OPENBLAS_NUM_THREADS": given}
+
+    told = subprocess.run(
+        [sys.executable, "-c", program], env=kept, capture_output=True, text=True, check=True
+    )
+
+    assert told.stdout.split()[-2:] == [given or "1", "1"]
 
 
 def test_the_table_has_a_row_for_each_and_says_why_one_did_not_pass(
@@ -109,6 +197,8 @@ def test_one_report_holds_all_recordings(capsys: pytest.CaptureFixture[str]) -> 
     assert page.count("<article") == 3
     assert 'href="#run-1"' in page
     assert 'id="run-1"' in page
+    assert 'href="#together-1"' in page
+    assert 'id="together-1"' in page
     assert Path("r.txt").read_text().count("sha256") == 3
     capsys.readouterr()
 

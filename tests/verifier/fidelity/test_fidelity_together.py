@@ -11,9 +11,11 @@ from runtime.arrays import Array
 from runtime.program import Program
 from verifier.fidelity.judging.neighbours import correlation_time, gathered
 from verifier.fidelity.judging.structure import MOST, shown_structure
+from verifier.fidelity.switching.together import with_every_switching
 from verifier.fidelity.together import verify_together
 from verifier.fidelity.verify import verify
-from verifier.report.report import Report, Verdict
+from verifier.report.report import Report, Standing, Verdict
+from verifier.report.switching import Switching, Way
 from verifier.traces.trace import Loss, Trace
 
 SETS = 100
@@ -228,6 +230,35 @@ def test_the_noise_is_that_of_each_recording(scenes: ModuleType) -> None:
     assert found.noise.sigma == pytest.approx(np.sqrt((0.002**2 + 0.06**2) / 2.0), rel=0.1)
     carried = np.sqrt(np.mean([each.declared.noise**2 for each in alone]))
     assert found.declared.noise == pytest.approx(carried)
+
+
+def changes(standing: Standing, expected: int) -> Switching:
+    way = Way("go", "rest", expected, 0, 0, 0, None, (), standing, "spec.yaml:1:1")
+    return Switching("mode", (way,), (), standing, ("that is why",), ())
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "verdict"),
+    [
+        (changes(Standing.WITHIN, 9), changes(Standing.WITHIN, 5), Verdict.PASS),
+        (changes(Standing.WITHIN, 9), changes(Standing.UNDECIDED, 0), Verdict.PASS),
+        (changes(Standing.WITHIN, 9), changes(Standing.UNDECIDED, 2), Verdict.INCONCLUSIVE),
+        (changes(Standing.UNDECIDED, 0), changes(Standing.UNDECIDED, 0), Verdict.INCONCLUSIVE),
+        (changes(Standing.UNDECIDED, 2), changes(Standing.EXCEEDED, 2), Verdict.FAIL),
+        (None, None, Verdict.PASS),
+    ],
+)
+def test_changes_of_mode_make_a_common_verdict_only_worse(
+    scenes: ModuleType, first: Switching | None, second: Switching | None, verdict: Verdict
+) -> None:
+    report = verify(scenes.van_der_pol(), scenes.van_der_pol_drive(1, 60.0, 0.01))
+    assert report.verdict is Verdict.PASS
+
+    found = with_every_switching(report, [("a.mcap", first), ("b.mcap", second)])
+
+    assert found.verdict is verdict
+    if verdict is not Verdict.PASS:
+        assert any(reason.endswith(".mcap: that is why") for reason in found.reasons)
 
 
 @pytest.mark.slow
