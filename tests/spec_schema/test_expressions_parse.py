@@ -230,9 +230,9 @@ def test_all_mistakes_are_told_at_once(text: str, codes: list[str]) -> None:
 )
 def test_a_hostile_text_is_refused_in_no_time(text: str) -> None:
     tracemalloc.start()
-    began = time.perf_counter()
+    began = time.process_time()  # of the processor, however busy the machine is
     found = faults(text)
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
 

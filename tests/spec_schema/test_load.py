@@ -185,7 +185,7 @@ def test_a_key_that_is_already_there_is_not_suggested() -> None:
     found = mistakes(GOOD.replace("horizon: 2 s", "horizon: 2 s\n  horizons: 3 s"))
 
     assert [one.help for one in found] == [
-        "the keys here are: tolerance, horizon, region, coverage"
+        "the keys here are: tolerance, scatter, horizon, region, coverage"
     ]
 
 
