@@ -65,7 +65,7 @@ class Effect:
     label: as in `dead time of turn`. starts: where a fit begins, the neutral values if empty.
     parameter: set where it is one of the scalars that are refitted. stands_in: it
     puts measured states in place of predicted ones, so that it is compared with itself at its
-    neutral values.
+    neutral values. best_of: so many like it were looked at before, which costs their logarithm.
     """
 
     kind: CandidateKind
@@ -77,6 +77,7 @@ class Effect:
     starts: tuple[Values, ...] = ()
     parameter: ParameterKind | None = None
     stands_in: bool = False
+    best_of: int = 1
 
     @property
     def neutral(self) -> Values:

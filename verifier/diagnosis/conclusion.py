@@ -75,7 +75,7 @@ def _told(
 ) -> Told:
     if selection.taken and share < PARTLY:
         return Told.STRUCTURE_DIFFERS if differs else Told.CANNOT_TELL
-    if any(_is_open(step) for step in selection.taken):
+    if any(_is_open(step) for step in selection.taken[:1]):  # later ones add to the first
         return Told.CANNOT_TELL
     if departs or any(each.kind not in SCALARS for each in taken):
         return Told.STRUCTURE_DIFFERS

@@ -259,7 +259,7 @@ def _tried(
         effect=effect,
         fitted=fitted,
         held_out=held_out,
-        gain=float(np.sum(gains)) - len(effect.numbers),
+        gain=float(np.sum(gains) - len(effect.numbers) - np.log(effect.best_of)),
         share=min(float(np.sum(explained) / max(float(np.sum(beyond)), 1e-300)), 1.0),
         matters=_matters(scene, reference, held_out, tolerance, MATTERS),
     )
@@ -276,9 +276,14 @@ def _matters(
 
 
 def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:
-    """Best first; of those that say the same, the one that stands first in the preference."""
+    """Best first; of those that say the same, the one that stands first in the preference.
+
+    A part of the region can imitate much, and yields to all that explains as well.
+    """
     order = sorted(tried, key=lambda t: -t.gain)
-    top = order[0]
+    whole = [t for t in order if t.effect.kind is not CandidateKind.REGION]
+    yields = order[0].effect.kind is CandidateKind.REGION and whole
+    top = whole[0] if yields and order[0].gain - whole[0].gain < CLOSE else order[0]
     same = [t for t in tried if t is top or _are_same(scene, t, top, base)]
     slips = [t for t in same if kind_of(t.effect, _own_values(t)) in SLIPS]
     head = (slips or same)[0]

@@ -109,6 +109,7 @@ def _effect(scene: Scene, along: Smoothed, spot: _Spot, *, is_fixed: bool) -> Ef
         numbers=(offset,) if is_fixed else (offset, edge),
         apply=_Beyond(offset_of(spot.rate), begins, values, spot.border, SIDES[spot.side], ramp),
         origin=scene.program.field.origin,
+        best_of=1 if is_fixed else len(BORDERS) * len(SIDES),
     )
 
 
