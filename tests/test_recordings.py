@@ -116,12 +116,12 @@ def test_a_faithful_robot_passes_with_nothing_but_its_file_named(
     assert noise["x"] == pytest.approx(SIGMA, rel=0.15)
 
 
-def test_a_robot_with_one_parameter_ten_percent_off_fails(
+def test_a_robot_with_one_parameter_a_fifth_off_fails(
     robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
 
-    assert specc.verify(robot(1.1).name, only_verdict=True).report.verdict is specc.Verdict.FAIL
+    assert specc.verify(robot(1.2).name, only_verdict=True).report.verdict is specc.Verdict.FAIL
 
 
 def test_an_attached_spec_that_is_not_the_projects_is_refused(

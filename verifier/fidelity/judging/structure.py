@@ -26,11 +26,12 @@ from verifier.fidelity.judging.neighbours import one_run
 
 MOST: Final = 600
 """So many windows are enough; of more, every second, third ... one is taken."""
-REACH: Final = 2.0
-"""How far neighbours reach, in standard deviations of the situation times its dimension's root."""
+REACHES: Final = (2.0, 0.7)
+"""How far wide and narrow bumps reach, in standard deviations of the situation times the root of
+its dimension."""
 RIDGE: Final = 1.0
 """The variance of the noise, as a share of what a constant, a slope or a bump has. Fixed, as the
-reach is: what is chosen to foretell best foretells chance, too."""
+reaches are: what is chosen to foretell best foretells chance, too."""
 FEWEST: Final = 4
 """With fewer clusters nothing is foretold."""
 
@@ -84,9 +85,10 @@ def _shown(errors: Array, kernel: Array, groups: tuple[Integers, Integers], chan
 
 
 def _bumps(situation: Array) -> Array:
-    """How alike situations are (W, W): 1 for the same, 0 for distant ones."""
+    """How alike situations are (W, W): one for each reach where they are the same."""
     distance = np.sum((situation[:, None, :] - situation[None, :, :]) ** 2, axis=-1)
-    return np.asarray(np.exp(-0.5 * distance / (REACH**2 * max(situation.shape[1], 1))))
+    widths = [reach**2 * max(situation.shape[1], 1) for reach in REACHES]
+    return np.asarray(sum(np.exp(-0.5 * distance / width) for width in widths))
 
 
 def _scaled(situation: Array) -> Array:
