@@ -31,6 +31,16 @@ def test_what_was_planted_is_named(row: Row) -> None:
     assert is_right(row, found), named(found)
 
 
+def test_of_a_faithful_robot_nothing_is_named_where_the_verdict_is_open() -> None:
+    """This drive sees too little for a PASS, so that everything is tried."""
+    (row,) = (row for row in rows() if (row.planted, row.spec) == ("nothing", "drive"))
+
+    found = diagnosed(program_of(row.spec), row.made(2))
+
+    assert found.told is Told.NO_DIFFERENCE
+    assert not any(each.is_taken for each in found.candidates)
+
+
 def test_a_field_that_bends_otherwise_is_no_matter_of_numbers() -> None:
     """A turn rate that is cut beyond 0.3 rad/s: no number of the spec explains it."""
     (row,) = (row for row in rows() if row.planted == "saturation 0.3 rad/s")
@@ -48,6 +58,7 @@ def test_a_turn_rate_that_is_off_in_one_region_is_told_with_its_border() -> None
     offset, border = taken.numbers
     assert taken.kind is CandidateKind.REGION
     assert taken.applies_to == ("heading", "distance")
+    assert "rad/s higher where distance is above 0.8" in taken.sentence
     assert offset.interval.low < 0.4 < offset.interval.high
     assert border.value == pytest.approx(0.85, abs=0.01)
     assert found.told is Told.STRUCTURE_DIFFERS
