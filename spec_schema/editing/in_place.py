@@ -1,6 +1,5 @@
 """Edits made in the characters of a spec's text, and checked by reading it again."""
 
-import itertools
 import re
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -31,9 +30,11 @@ def edited(source: Source, edits: tuple[Edit, ...]) -> Source:
     """
     page = _Page(source, read(source))
     spots = [_spot(page, edit) for edit in edits if not isinstance(edit, NewKey)]
-    keys = [edit for edit in edits if isinstance(edit, NewKey)]
-    for _, group in itertools.groupby(keys, key=lambda edit: edit.path[:-1]):
-        spots.append(_keys(page, tuple(group)))
+    keys: dict[Path, list[NewKey]] = {}
+    for edit in edits:
+        if isinstance(edit, NewKey):
+            keys.setdefault(edit.path[:-1], []).append(edit)
+    spots += [_keys(page, tuple(group)) for group in keys.values()]
     text = source.text
     for spot in sorted(spots, key=lambda spot: spot.start, reverse=True):
         text = text[: spot.start] + spot.text + text[spot.end :]

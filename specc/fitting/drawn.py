@@ -49,7 +49,7 @@ def redrawn(loaded: Loaded, cases: tuple[Case, ...], logs: Logs, tell: Tell) -> 
         moves = moves_of(loaded, aims)
         for move in moves:
             first = found.get(move.path, move)
-            found[move.path] = replace(move, old=first.old)
+            found[move.path] = replace(move, old=first.old, place=first.place)
         if not moves:
             break
         loaded, program = compiled(moved(loaded.source, moves))

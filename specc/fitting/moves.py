@@ -1,8 +1,9 @@
 """Aims as edits of the user's text: the number as it is written there, in its own unit."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 from spec_schema.editing.edits import Edit, EditError, NewKey, NewNumber, NewText
 from spec_schema.editing.in_place import edited
@@ -13,6 +14,9 @@ from spec_schema.units import parse_quantity
 from specc.faults import fault
 from specc.fitting.aims import Aim, AnyAim
 from specc.fitting.rounding import rounded
+
+ROUNDING: Final = 1e-13
+"""What a number may lose on its way to SI and back: `15 deg` comes back as 15.000000000000002."""
 
 
 @final
@@ -98,7 +102,7 @@ def _is_same(old: Plain, number: str) -> bool:
     if old is None:
         return float(number) == 0.0
     written = float(old) if isinstance(old, int | float) else _number_of(str(old))
-    return written == float(number)
+    return math.isclose(written, float(number), rel_tol=ROUNDING)
 
 
 def _number_of(text: str) -> float:

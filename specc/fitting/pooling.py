@@ -20,7 +20,7 @@ def pooled(told: Sequence[Aims]) -> Aims:
         found = [aim for each in told for aim in each.aims if aim.path == path]
         numbers = [aim for aim in found if isinstance(aim, Aim)]
         aims.append(_mean(numbers) if len(numbers) == len(found) else found[0])
-        if len(set(found)) > 1 and _is_contradiction(found):
+        if _is_contradiction(found):
             values = " and ".join(_shown(aim) for aim in found)
             choices.append(f"{found[0].name}: the recordings contradict one another: {values}")
     beyond = dict.fromkeys(sentence for each in told for sentence in each.beyond)
@@ -42,7 +42,7 @@ def _mean(found: Sequence[Aim]) -> Aim:
 def _is_contradiction(found: Sequence[AnyAim]) -> bool:
     numbers = [aim for aim in found if isinstance(aim, Aim)]
     if len(numbers) < len(found):
-        return True
+        return bool(numbers) or len({_shown(aim) for aim in found}) > 1
     return any(
         abs(one.value - other.value) > APART * (one.half**2 + other.half**2) ** 0.5
         for one in numbers

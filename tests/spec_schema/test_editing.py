@@ -137,3 +137,14 @@ def test_what_can_not_be_changed_in_place_is_refused(text: str, path: Path) -> N
 def test_what_no_longer_reads_as_meant_is_refused() -> None:
     with pytest.raises(EditError, match="in place"):
         change("a: {b: x}\n", NewText(("a", "b"), "y, c: 1"))
+
+
+def test_new_keys_of_one_mapping_need_not_stand_together() -> None:
+    text = "t:\n  a: /x.y\n  b: /x.z\n"
+    delays = [NewKey(("t", name, "delay"), "0.1 s", "path") for name in "ab"]
+    scale = NewKey(("t", "a", "scale"), "-1", "path")
+
+    found = change(text, *delays, scale)
+
+    a, b = "{path: /x.y, delay: 0.1 s, scale: -1}", "{path: /x.z, delay: 0.1 s}"
+    assert found == f"t:\n  a: {a}\n  b: {b}\n"

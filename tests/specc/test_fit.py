@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 import specc
 from spec_schema.diagnostics import SpecError
 from spec_schema.source import Source
-from specc.fitting.aims import Aim, Aims
+from specc.fitting.aims import Aim, Aims, UnitAim
 from specc.fitting.compiling import compiled
 from specc.fitting.fitted import BOM, Outcome
-from specc.fitting.moves import moved
+from specc.fitting.moves import _is_same, moved
 from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
 from specc.fitting.rounding import rounded
@@ -129,6 +129,20 @@ def test_runs_that_contradict_one_another_leave_a_choice() -> None:
     assert not pooled([Aims((one,)), Aims((near,))]).choices
     [said] = pooled([Aims((one,)), Aims((far,)), Aims(())]).choices
     assert said == "v1: the recordings contradict one another: 0.46 and 0.55"
+
+
+def test_units_contradict_where_they_differ_and_not_where_reasons_do() -> None:
+    one = UnitAim(("trace", "heading", "unit"), "unit of heading", "deg", "93 % of the error")
+    same, other = replace(one, sentence="88 % of the error"), replace(one, text="mrad")
+
+    assert not pooled([Aims((one,)), Aims((same,))]).choices
+    assert len(pooled([Aims((one,)), Aims((other,))]).choices) == 1
+
+
+@pytest.mark.parametrize("degrees", [15, 30, 60, 116])
+def test_a_number_that_is_there_already_is_no_move(degrees: int) -> None:
+    assert _is_same(f"{degrees} deg", str(degrees))
+    assert not _is_same(f"{degrees} deg", f"{degrees}.0001")
 
 
 def test_pooled_values_are_weighted_by_how_exactly_they_are_known() -> None:
