@@ -16,7 +16,6 @@ SCITOS = RECORDINGS / "scitos" / "wall_following.csv"
 SOME = (
     "nothing",
     "dead zone 4 cm",
-    "dead time 0.3 s",
     "distance in millimetres",
     "turn logged 0.3 s late",
     "x seen 0.1 too high",

@@ -36,7 +36,7 @@ def scene(program: Program, trace: Trace) -> Scene:
 
 def test_refitted_gains_are_unbiased_and_their_intervals_hold(wall_follow: Program) -> None:
     gains, held = [], 0
-    for seed in range(6):
+    for seed in range(4):
         here = scene(wall_follow, wall(Wall(), seed))
         parameters = parameters_of(wall_follow, here.needs)
         (gain,) = (effect_of(p) for p in parameters if p.label == "gain of the rate of heading")
@@ -45,9 +45,9 @@ def test_refitted_gains_are_unbiased_and_their_intervals_hold(wall_follow: Progr
         gains.append(fitted.values[0])
         held += interval.low <= 1.0 <= interval.high
 
-    # A single gain is known to about 0.014; the mean of 6 to 0.006.
+    # A single gain is known to about 0.014; the mean of 4 to 0.007.
     assert np.mean(gains) == pytest.approx(1.0, abs=0.015)
-    assert held >= 5
+    assert held >= 3
 
 
 def test_the_information_on_the_speed_is_that_of_a_straight_line(wall_follow: Program) -> None:
