@@ -18,8 +18,13 @@ from google.protobuf.message_factory import GetMessageClass
 
 from runtime.program import Kind
 from spec_schema.diagnostics import SpecError
+from verifier.traces.files.log import Wanted
+from verifier.traces.files.ulog_file import read_ulog
 from verifier.traces.inventory import inspect
+from verifier.traces.messages.channel import Channel
 from verifier.traces.messages.definitions import definition
+from verifier.traces.messages.leaves import list_fields
+from verifier.traces.messages.protobuf_messages import Protobuf
 from verifier.traces.messages.wire import decode
 from verifier.traces.read import read_trace
 
@@ -235,3 +240,24 @@ def test_a_damaged_ulog_is_read_on_from_the_next_mark(workshop: Any, make: Any) 
 
     assert trace.series["v"].values.tolist() == [*range(10), *range(12, 20)]
     assert {loss.cause for loss in trace.losses} >= {"damaged bytes"}
+
+
+def test_a_type_that_holds_itself_many_times_does_not_grow_without_end() -> None:
+    """A stranger's 16 fields of the type itself would be 16 ** 12 structs, one by one."""
+    schema = FileDescriptorSet()
+    file = schema.file.add(name="a.proto", syntax="proto3")
+    message = file.message_type.add(name="A")
+    for i in range(16):
+        message.field.add(name=f"a{i}", number=i + 1, label=1, type=F.TYPE_MESSAGE, type_name=".A")
+    channel = Channel("/a", "A", "protobuf", "protobuf", schema.SerializeToString())
+
+    assert list_fields(Protobuf(channel).root) == ()
+
+
+def test_channels_of_a_ulog_share_the_formats_before_them(workshop: Any) -> None:
+    """Thousands of subscriptions, each with its own copy of all formats, would fill the memory."""
+    path = ulog_file(workshop, attitude(0), attitude(0, key=4))
+
+    first, second = read_ulog(path, Wanted(None, None), lambda _done, _of: None).streams
+
+    assert first.channel.schema is second.channel.schema

@@ -42,6 +42,7 @@ class _Walk:
         self.data = data
         self.gathering = gathering
         self.formats: list[str] = []
+        self.schema: bytes | None = None
         self.appended: list[int] = []
         self.lengths: dict[bytes, int] = {}
         self.position = _FIRST
@@ -89,6 +90,7 @@ class _Walk:
             self.lengths[data[begin : begin + 2]] = end - begin
         elif kind == ord("F"):
             self.formats.append(data[begin:end].decode("utf-8", errors="replace"))
+            self.schema = None
         elif kind == ord("A") and end - begin >= 4:
             instance, key = struct.unpack_from("<BH", data, begin)
             self._subscribe(key, instance, data[begin + 3 : end])
@@ -102,6 +104,9 @@ class _Walk:
 
     def _subscribe(self, key: int, instance: int, raw: bytes) -> None:
         name = raw.decode("utf-8", errors="replace")
+        if self.schema is None:
+            # Joined once for all that subscribe after it: thousands of channels share these bytes.
+            self.schema = "\n".join(self.formats).encode()
         self.gathering.declare(
             key,
             Channel(
@@ -109,7 +114,7 @@ class _Walk:
                 message_type=name,
                 encoding="ulog",
                 schema_encoding="ulog",
-                schema="\n".join(self.formats).encode(),
+                schema=self.schema,
             ),
         )
 

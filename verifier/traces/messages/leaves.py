@@ -8,15 +8,16 @@ from verifier.traces.messages.fields import is_quaternion, is_stamp
 from verifier.traces.messages.paths import DERIVED, MessagePath, Steps, path_text
 
 MOST_FIELDS = 400
+MOST_NODES = 20_000
+"""Looked at. Types within types, each many times in the next, may hold no leaf for ever."""
 MOST_ITEMS = 8
 DEEPEST = 16
 
 
 def list_fields(root: Struct) -> tuple[Steps, ...]:
     """The leaves of a message: all items of short lists, the first of long ones; no stamps."""
-    found = (
-        steps for steps, node in _walk(root, (), DEEPEST) if not isinstance(node, Struct | Many)
-    )
+    nodes = islice(_walk(root, (), DEEPEST), MOST_NODES)
+    found = (steps for steps, node in nodes if not isinstance(node, Struct | Many))
     return tuple(islice(found, MOST_FIELDS))
 
 

@@ -35,7 +35,7 @@ class Protobuf:
     def __init__(self, channel: Channel) -> None:
         self._descriptor = _descriptor(channel)
         self._message: type[Message] = GetMessageClass(self._descriptor)
-        self.root = _struct(self._descriptor, 0)
+        self.root = _struct(self._descriptor, 0, {})
 
     def decode(self, payloads: Sequence[bytes], asked: Sequence[Steps]) -> Decoded:
         """The asked-for leaves in all messages; one that is no such message is not readable.
@@ -83,17 +83,24 @@ def _add(pool: DescriptorPool, files: dict[str, FileDescriptorProto], name: str)
         pool.Add(file)
 
 
-def _struct(descriptor: Descriptor, depth: int) -> Struct:
-    fields = tuple((field.name, _node(field, depth)) for field in descriptor.fields)
-    return Struct(descriptor.full_name, fields)
+def _struct(descriptor: Descriptor, depth: int, known: dict[tuple[str, int], Struct]) -> Struct:
+    """The tree of a type; `known` shares what stands in many places, or it would grow without end.
+
+    Three fields of the type itself would make 3 ** 12 structs of it.
+    """
+    key = (descriptor.full_name, depth)
+    if key not in known:
+        fields = tuple((field.name, _node(field, depth, known)) for field in descriptor.fields)
+        known[key] = Struct(descriptor.full_name, fields)
+    return known[key]
 
 
-def _node(field: FieldDescriptor, depth: int) -> Node:
+def _node(field: FieldDescriptor, depth: int, known: dict[tuple[str, int], Struct]) -> Node:
     node: Node
     if field.cpp_type == FieldDescriptor.CPPTYPE_MESSAGE:
         # A type may contain itself; nobody measures that deep.
         deep = depth >= DEEPEST
-        node = Struct(field.name, ()) if deep else _struct(field.message_type, depth + 1)
+        node = Struct(field.name, ()) if deep else _struct(field.message_type, depth + 1, known)
     else:
         node = Text() if field.cpp_type in _TEXTS else Number("f8")
     return Many(node, None) if field.is_repeated else node
