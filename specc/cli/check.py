@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated, final
 
 import typer
 
-from specc.cli.console import print_json, print_styled, say, show_diagnostics, shown_bar
+from specc.cli.console import (
+    print_annotations,
+    print_json,
+    print_styled,
+    say,
+    show_diagnostics,
+    shown_bar,
+)
 from specc.cli.status import Status
 from specc.cli.warming import warmed
 
@@ -66,8 +73,7 @@ def check(
             mistakes = [d.as_json() for d in found]
             print_json({"mistakes": mistakes, "claims": []} if claims else mistakes)
         case CheckFormat.GITHUB:
-            for d in found:
-                typer.echo(_annotation(d.as_json()))
+            print_annotations(found)
         case CheckFormat.TEXT:
             show_diagnostics(found)
             if not failed:
@@ -150,30 +156,16 @@ def _unjudged(files: Sequence[Path], found: "Sequence[tuple[Program, Finding]]")
 
 def _print_claim(program: "Program", finding: "Finding", form: CheckFormat) -> None:
     from specc.claims_text import STYLES, finding_text
+    from verifier.report.annotations import annotation
 
     if form is CheckFormat.TEXT:
         text = finding_text(program, finding)
         print_styled(text, f": {finding.ruling}: ", STYLES[finding.ruling])
     elif form is CheckFormat.GITHUB and not finding.ruling.holds:
         text = finding_text(program, finding)
-        typer.echo(_claim_annotation(finding.claim.origin, str(finding.ruling), text))
+        severity = "error" if finding.ruling == "refuted" else "warning"
+        typer.echo(annotation(severity, finding.claim.origin, str(finding.ruling), text))
 
 
 def _specs(count: int) -> str:
     return f"{count} spec" + ("" if count == 1 else "s")
-
-
-def _annotation(d: dict[str, object]) -> str:
-    message = f"{d['message']} ({d['help']})" if d["help"] else f"{d['message']}"
-    where = f"file={d['file']},line={d['line']},col={d['column']},endColumn={d['end_column']}"
-    return f"::{d['severity']} {where},title={d['code']}::{_safe(message)}"
-
-
-def _claim_annotation(origin: str, ruling: str, text: str) -> str:
-    file, line, column = origin.rsplit(":", 2)
-    severity = "error" if ruling == "refuted" else "warning"
-    return f"::{severity} file={file},line={line},col={column},title={ruling}::{_safe(text)}"
-
-
-def _safe(message: str) -> str:
-    return message.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
