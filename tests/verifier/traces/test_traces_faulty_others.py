@@ -20,6 +20,9 @@ from rosbags.rosbag2 import Writer as Writer2
 from spec_schema.diagnostics import SpecError
 from verifier.traces.files.bag1_file import MAGIC
 from verifier.traces.files.bag1_records import CHUNK, record_at
+from verifier.traces.files.bag2_file import read_bag2
+from verifier.traces.files.log import Wanted
+from verifier.traces.files.sqlite_pages import MOST_READINGS, StrayRows
 from verifier.traces.inventory import inspect
 from verifier.traces.trace import Trace
 
@@ -163,6 +166,52 @@ def test_a_database_with_values_of_other_types_loses_those_rows(workshop: Any) -
     assert {"corrupt record", "impossible log time", "unreadable messages"} == {
         loss.cause for loss in trace.losses
     }
+
+
+def knot(pages: int, cells: int) -> bytes:
+    """A database without a tree, in which the cells of one leaf all lead to one long chain."""
+    size, payload = 4096, (pages - 3) * 4092
+    head = b"\x00\x01\x06" + varint(2 * payload + 12)
+    head = varint(len(head) + 1) + head
+    length = len(head) + 1 + 8 + payload
+    least = (size - 12) * 32 // 255 - 23
+    local = least + (length - least) % (size - 4)
+    local = local if local <= size - 35 else least
+    body = head + b"\x01" + (10 * SECOND).to_bytes(8, "big") + bytes(payload)
+    cell = varint(length) + b"\x01" + body[:local] + (3).to_bytes(4, "big")
+    place = size - len(cell)
+    leaf = b"\x0d\0\0" + cells.to_bytes(2, "big") + bytes(3) + cells * place.to_bytes(2, "big")
+    rest = body[local:]
+    chain = b"".join(
+        (4 + i).to_bytes(4, "big") + rest[i * 4092 : (i + 1) * 4092].ljust(4092, b"\0")
+        for i in range(pages - 2)
+    )
+    first = b"SQLite format 3\0" + size.to_bytes(2, "big")
+    return first.ljust(size, b"\0") + leaf.ljust(place, b"\0") + cell + chain
+
+
+def varint(number: int) -> bytes:
+    """Seven bits a byte, the last one without its mark."""
+    low = bytes([number & 0x7F])
+    number >>= 7
+    while number:
+        low = bytes([number & 0x7F | 0x80]) + low
+        number >>= 7
+    return low
+
+
+def test_cells_that_share_their_pages_are_not_read_again_and_again(workshop: Any) -> None:
+    """A thousand cells on one chain would cost a thousand times the file, in memory and time."""
+    data = knot(pages=50, cells=300)
+    rows = StrayRows(data)
+
+    bodies = [row[3] for _, _, row in rows]
+
+    assert 1 <= len(bodies) <= MOST_READINGS
+    assert sum(len(body) for body in bodies if isinstance(body, bytes)) <= MOST_READINGS * len(data)
+    assert len(bodies) + rows.left_out == 300
+    log = read_bag2(workshop.text(data, "a.db3"), Wanted(None, None), lambda _done, _of: None)
+    assert ("rows left out", rows.left_out) in {(loss.cause, loss.count) for loss in log.losses}
 
 
 def test_what_a_killed_recorder_left_in_the_write_ahead_log_is_read(workshop: Any) -> None:

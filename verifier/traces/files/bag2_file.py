@@ -10,7 +10,13 @@ from urllib.parse import quote
 import zstandard
 
 from verifier.traces.files.log import MessageLog, Progress, Wanted
-from verifier.traces.files.sqlite_pages import Value, page_size, pages_claimed, stray_rows
+from verifier.traces.files.sqlite_pages import (
+    MOST_READINGS,
+    StrayRows,
+    Value,
+    page_size,
+    pages_claimed,
+)
 from verifier.traces.files.streams import Gathering
 from verifier.traces.files.unpacking import LARGEST
 from verifier.traces.messages.channel import Channel
@@ -140,7 +146,8 @@ def _salvage(path: Path, gathering: Gathering[int], tell: Progress) -> None:
     topics: dict[int, tuple[str, str, str]] = {}
     last = 0
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        for place, number, row in stray_rows(data):
+        rows = StrayRows(data)
+        for place, number, row in rows:
             match row:
                 case [None, int(topic), int(log_time), bytes(payload)]:
                     _add(gathering, topic, log_time, payload)
@@ -154,6 +161,9 @@ def _salvage(path: Path, gathering: Gathering[int], tell: Progress) -> None:
         gathering.declare(number, _channel(name, kind, encoding, definitions))
     if gathering.count:
         gathering.lose("unverified messages", "read of single pages", gathering.count)
+    if rows.left_out:
+        detail = f"they lead to the same bytes more than {MOST_READINGS} times over"
+        gathering.lose("rows left out", detail, rows.left_out)
     if last > gathering.count:
         detail = f"they are numbered up to {last}"
         gathering.lose("messages missing", detail, last - gathering.count)

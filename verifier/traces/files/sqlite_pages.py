@@ -6,10 +6,13 @@ https://www.sqlite.org/fileformat2.html, 1.6 and 2.1
 
 import mmap
 from collections.abc import Iterator
-from typing import TypeAlias
+from typing import Final, TypeAlias, final
 
 Bytes: TypeAlias = bytes | mmap.mmap
 Value: TypeAlias = int | str | bytes | None
+
+MOST_READINGS: Final = 4
+"""So often the bytes of a file are read for its rows, at most. A whole database needs one."""
 
 _HEAD = 100
 _TABLE_LEAF = 0x0D
@@ -28,20 +31,76 @@ def pages_claimed(data: Bytes) -> int:
     return int.from_bytes(data[28:32], "big")
 
 
-def stray_rows(data: Bytes) -> Iterator[tuple[int, int, list[Value]]]:
-    """The byte, the row's number and the values of every row that stands in a whole leaf page."""
-    size = page_size(data)
-    for start in range(0, len(data) - size + 1, size):
-        head = start + (_HEAD if start == 0 else 0)
-        if data[head] != _TABLE_LEAF:
-            continue
-        for i in range(int.from_bytes(data[head + 3 : head + 5], "big")):
-            pointer = head + 8 + 2 * i
-            if pointer + 2 > start + size:
-                break
-            place = start + int.from_bytes(data[pointer : pointer + 2], "big")
-            if place >= pointer + 2 and (row := _cell(data, place, start + size, size)):
-                yield (start, *row)
+@final
+class StrayRows:
+    """The byte, the row's number and the values of every row that stands in a whole leaf page.
+
+    Pages of a whole database share no bytes. In a damaged one many cells may lead to the same
+    ones, so what is read in all is bounded; `left_out` counts the rows behind that bound.
+    """
+
+    def __init__(self, data: Bytes) -> None:
+        self._data = data
+        self._page = page_size(data)
+        self._room = MOST_READINGS * len(data)
+        self.left_out = 0
+
+    def __iter__(self) -> Iterator[tuple[int, int, list[Value]]]:
+        """Page by page."""
+        data, size = self._data, self._page
+        for start in range(0, len(data) - size + 1, size):
+            head = start + (_HEAD if start == 0 else 0)
+            if data[head] != _TABLE_LEAF:
+                continue
+            for i in range(int.from_bytes(data[head + 3 : head + 5], "big")):
+                pointer = head + 8 + 2 * i
+                if pointer + 2 > start + size:
+                    break
+                place = start + int.from_bytes(data[pointer : pointer + 2], "big")
+                if place >= pointer + 2 and (row := self._cell(place, start + size)):
+                    yield (start, *row)
+
+    def _cell(self, place: int, end: int) -> tuple[int, list[Value]] | None:
+        """Number and values of the row at `place`; None where the bytes are no whole row."""
+        if place + 20 > end:
+            return None
+        length, place = _varint(self._data, place)
+        number, place = _varint(self._data, place)
+        if length > len(self._data):
+            return None
+        body = self._payload(place, end, length)
+        if self._room < 0:
+            self.left_out += 1
+            return None
+        values = None if body is None else _record(body)
+        return None if values is None else (number, values)
+
+    def _payload(self, place: int, end: int, length: int) -> bytes | None:
+        """The row's bytes, from this page and those that it overflows into."""
+        data, page = self._data, self._page
+        if length <= page - 35:
+            return self._taken(place, length) if place + length <= end else None
+        least = (page - 12) * 32 // 255 - 23
+        local = least + (length - least) % (page - 4)
+        local = local if local <= page - 35 else least
+        if place + local + 4 > end:
+            return None
+        parts = [self._taken(place, local)]
+        left = length - local
+        following = int.from_bytes(data[place + local : place + local + 4], "big")
+        while left > 0 and self._room >= 0:
+            start = (following - 1) * page
+            if following < 2 or start + page > len(data):
+                return None
+            parts.append(self._taken(start + 4, min(left, page - 4)))
+            left -= page - 4
+            following = int.from_bytes(data[start : start + 4], "big")
+        return b"".join(parts)
+
+    def _taken(self, place: int, count: int) -> bytes:
+        """So many bytes from `place` on; none where no more may be read."""
+        self._room -= count
+        return bytes(self._data[place : place + count]) if self._room >= 0 else b""
 
 
 def _varint(data: Bytes, place: int) -> tuple[int, int]:
@@ -53,43 +112,6 @@ def _varint(data: Bytes, place: int) -> tuple[int, int]:
         if byte < 0x80:
             return value, place + i + 1
     return value << 8 | data[place + 8], place + 9
-
-
-def _cell(data: Bytes, place: int, end: int, page: int) -> tuple[int, list[Value]] | None:
-    """Number and values of the row at `place`; None where the bytes are no whole row."""
-    if place + 20 > end:
-        return None
-    length, place = _varint(data, place)
-    number, place = _varint(data, place)
-    if length > len(data):
-        return None
-    body = _payload(data, place, end, page, length)
-    if body is None:
-        return None
-    values = _record(body)
-    return None if values is None else (number, values)
-
-
-def _payload(data: Bytes, place: int, end: int, page: int, length: int) -> bytes | None:
-    """The row's bytes, from this page and those that it overflows into."""
-    if length <= page - 35:
-        return bytes(data[place : place + length]) if place + length <= end else None
-    least = (page - 12) * 32 // 255 - 23
-    local = least + (length - least) % (page - 4)
-    local = local if local <= page - 35 else least
-    if place + local + 4 > end:
-        return None
-    parts = [bytes(data[place : place + local])]
-    left = length - local
-    following = int.from_bytes(data[place + local : place + local + 4], "big")
-    while left > 0:
-        start = (following - 1) * page
-        if following < 2 or start + page > len(data):
-            return None
-        parts.append(bytes(data[start + 4 : start + 4 + min(left, page - 4)]))
-        left -= page - 4
-        following = int.from_bytes(data[start : start + 4], "big")
-    return b"".join(parts)
 
 
 def _record(body: bytes) -> list[Value] | None:
