@@ -261,3 +261,24 @@ def test_channels_of_a_ulog_share_the_formats_before_them(workshop: Any) -> None
     first, second = read_ulog(path, Wanted(None, None), lambda _done, _of: None).streams
 
     assert first.channel.schema is second.channel.schema
+
+
+def test_formats_and_subscriptions_in_turn_do_not_fill_the_memory(
+    workshop: Any, make: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each subscription after a new format would be given a copy of all formats before it."""
+    monkeypatch.setattr("verifier.traces.files.ulog_file.MOST_FORMATS", 10_000)
+    turns = [
+        ulog("F", b"t%03d:uint64_t timestamp;" % i) + ulog("A", struct.pack("<BH", 0, 9 + i) + b"t")
+        for i in range(100)
+    ]
+    path = ulog_file(workshop, attitude(0), *turns, attitude(1))
+
+    streams = read_ulog(path, Wanted(None, None), lambda _done, _of: None).streams
+    trace = read_yaw(make, path)
+
+    assert sum(len(stream.channel.schema) for stream in streams) <= 10_000
+    assert trace.series["v"].values.tolist() == [0, 1]
+    [loss] = trace.losses
+    assert loss.cause == "formats left out"
+    assert 20 < loss.count < 100

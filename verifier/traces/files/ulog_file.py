@@ -6,7 +6,7 @@ https://docs.px4.io/main/en/dev_log/ulog_file_format.html
 import mmap
 import struct
 from pathlib import Path
-from typing import final
+from typing import Final, final
 
 from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.streams import Gathering
@@ -14,6 +14,9 @@ from verifier.traces.messages.channel import Channel
 
 MAGIC = b"ULog\x01\x12\x35"
 SYNC = b"\x2f\x73\x13\x20\x25\x0c\xbb\x12"
+
+MOST_FORMATS: Final = 1 << 27
+"""Bytes of formats that all subscriptions of a file are given, at most; PX4's own take 2e7."""
 
 _HEAD = struct.Struct("<HB")
 _FIRST = 16
@@ -41,8 +44,10 @@ class _Walk:
     def __init__(self, data: mmap.mmap, gathering: Gathering[int]) -> None:
         self.data = data
         self.gathering = gathering
-        self.formats: list[str] = []
+        self.formats: list[bytes] = []
         self.schema: bytes | None = None
+        self.formats_bytes = 0
+        self.room = MOST_FORMATS
         self.appended: list[int] = []
         self.lengths: dict[bytes, int] = {}
         self.position = _FIRST
@@ -89,8 +94,9 @@ class _Walk:
             gathering.add(key, microseconds * 1000, data, begin + 2, end)
             self.lengths[data[begin : begin + 2]] = end - begin
         elif kind == ord("F"):
-            self.formats.append(data[begin:end].decode("utf-8", errors="replace"))
+            self.formats.append(data[begin:end])
             self.schema = None
+            self.formats_bytes += end - begin + 1
         elif kind == ord("A") and end - begin >= 4:
             instance, key = struct.unpack_from("<BH", data, begin)
             self._subscribe(key, instance, data[begin + 3 : end])
@@ -104,9 +110,6 @@ class _Walk:
 
     def _subscribe(self, key: int, instance: int, raw: bytes) -> None:
         name = raw.decode("utf-8", errors="replace")
-        if self.schema is None:
-            # Joined once for all that subscribe after it: thousands of channels share these bytes.
-            self.schema = "\n".join(self.formats).encode()
         self.gathering.declare(
             key,
             Channel(
@@ -114,9 +117,21 @@ class _Walk:
                 message_type=name,
                 encoding="ulog",
                 schema_encoding="ulog",
-                schema=self.schema,
+                schema=self._known_formats(),
             ),
         )
+
+    def _known_formats(self) -> bytes:
+        """All formats so far, for one subscription; none where they take too much together."""
+        self.room -= self.formats_bytes
+        if self.room < 0:
+            detail = f"of subscriptions after the first {MOST_FORMATS} bytes of formats"
+            self.gathering.lose("formats left out", detail)
+            return b""
+        if self.schema is None:
+            # Joined once for all that subscribe after it: thousands of channels share these bytes.
+            self.schema = b"\n".join(self.formats)
+        return self.schema
 
     def _resync(self) -> None:
         """Moves behind the next mark that the logger sets for this, or to the end."""
