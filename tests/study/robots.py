@@ -104,7 +104,7 @@ def advanced(robot: Robot, state: Array, inputs: Array, deviation: float) -> Arr
     return state + CLOCK / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
 
 
-def measured(  # noqa: PLR0913  # as many as a log has conditions
+def measured(  # as many as a log has conditions
     program: Program,
     robot: Robot,
     drives: Drives,
