@@ -5,7 +5,6 @@ of a drive of many hours, and opaque blocks beside them that nobody asks for. Wh
 the memory that is the process's own (`RssAnon`; pages of the file that the system keeps are not),
 above what it had before, and the processor's time.
 """
-# ruff: noqa: T201 - a study prints
 
 import argparse
 import struct

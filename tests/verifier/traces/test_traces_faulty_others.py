@@ -3,7 +3,9 @@
 import bz2
 import gzip
 import lzma
+import shutil
 import sqlite3
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -316,6 +318,64 @@ def test_a_packed_log_is_unpacked_whole_or_torn(workshop: Any, make: Any, suffix
         found = trace.series["x"].values.tolist()
         assert found == list(range(len(found)))
         assert trace.losses
+
+
+@pytest.fixture
+def crowded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A temporary folder of the system with 2 MB free."""
+    folder = tmp_path / "crowded"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    usage = shutil._ntuple_diskusage(10_000_000, 8_000_000, 2_000_000)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _path: usage)
+    return folder
+
+
+def test_a_packed_log_does_not_fill_the_disk(workshop: Any, crowded: Path) -> None:
+    path = workshop.text(gzip.compress(SHEET.encode() + bytes(10_000_000)), "log.csv.gz")
+
+    with pytest.raises(SpecError) as caught:
+        workshop.read(path, x="x")
+
+    [said] = caught.value.diagnostics
+    assert said.code == "V301"
+    assert said.message == (
+        f"it unpacks to more than 2 MB, which {crowded} can't hold: more is not free there"
+    )
+    assert "TMPDIR" in said.help
+    assert list(crowded.iterdir()) == [], "what was unpacked is removed"
+    small = workshop.text(gzip.compress(SHEET.encode()), "small.csv.gz")
+    assert len(workshop.read(small, x="x").series["x"].values) == 100
+
+
+def test_a_disk_that_is_full_while_unpacking_is_named(
+    workshop: Any, crowded: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`/dev/full` takes nothing: each write to it fails as on a full disk."""
+    path = workshop.text(gzip.compress(SHEET.encode()), "log.csv.gz")
+    monkeypatch.setattr(Path, "open", full(Path.open))
+
+    with pytest.raises(SpecError, match="V301") as caught:
+        workshop.read(path, x="x")
+
+    [said] = caught.value.diagnostics
+    assert said.message.endswith(f"which {crowded} can't hold: no space left on device")
+    assert list(crowded.iterdir()) == []
+
+
+def full(opened: Callable[..., Any]) -> Callable[..., Any]:
+    """`opened`, but for files that are to be written."""
+    return lambda path, mode="r": opened(Path("/dev/full") if mode == "wb" else path, mode)
+
+
+def test_without_a_temporary_folder_the_log_is_not_said_to_be_missing(
+    workshop: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = workshop.text(gzip.compress(SHEET.encode()), "log.csv.gz")
+    monkeypatch.setattr(tempfile, "tempdir", str(path.parent / "nowhere"))
+
+    with pytest.raises(SpecError, match=r"V301.*no temporary folder can be made"):
+        workshop.read(path, x="x")
 
 
 def test_an_empty_part_of_a_folder_is_counted(workshop: Any, make: Any) -> None:

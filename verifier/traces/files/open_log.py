@@ -16,7 +16,7 @@ from verifier.traces.files.csv_file import read_csv
 from verifier.traces.files.csv_layout import is_csv
 from verifier.traces.files.log import LogFile, MessageLog, Messages, Progress, Wanted
 from verifier.traces.files.mcap_file import find_attachment, is_mcap, read_mcap
-from verifier.traces.files.packed_file import is_packed, unpack_file
+from verifier.traces.files.packed_file import ELSEWHERE, is_packed, reason, unpack_file
 from verifier.traces.files.ulog_file import is_ulog, read_ulog
 from verifier.traces.trace import Loss
 
@@ -59,8 +59,7 @@ def attached_program(path: Path) -> tuple[str, bytes] | None:
 def _unreadable(path: Path, error: OSError) -> SpecError:
     if isinstance(error, FileNotFoundError):
         return file_fault(path, "V301", "there is no such file")
-    reason = (error.strerror or str(error)).lower()
-    return file_fault(path, "V301", f"the log can't be read: {reason}")
+    return file_fault(path, "V301", f"the log can't be read: {reason(error)}")
 
 
 def _head(path: Path) -> bytes:
@@ -98,7 +97,7 @@ def _strange(head: bytes) -> str:
 
 def _read_packed(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
     """The log inside; it is unpacked into a temporary file first."""
-    with TemporaryDirectory(prefix="specc-") as folder:
+    with _temporary(path) as folder:
         inside = Path(folder) / path.stem
         fault = unpack_file(path, inside)
         if is_packed(_head(inside)):
@@ -110,6 +109,15 @@ def _read_packed(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
             raise SpecError(about) from error
     lost = (Loss("packed file damaged", 1, fault),) if fault else ()
     return replace(log, source=str(path), losses=(*lost, *log.losses))
+
+
+def _temporary(path: Path) -> TemporaryDirectory[str]:
+    """A folder that is removed with all that is in it."""
+    try:
+        return TemporaryDirectory(prefix="specc-")
+    except OSError as error:
+        message = f"it is packed, and no temporary folder can be made: {reason(error)}"
+        raise file_fault(path, "V301", message, ELSEWHERE) from error
 
 
 def _read_folder(path: Path, wanted: Wanted, tell: Progress) -> LogFile:

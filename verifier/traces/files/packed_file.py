@@ -3,16 +3,25 @@
 import bz2
 import gzip
 import lzma
+import shutil
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import BinaryIO, Protocol, TypeAlias
+from typing import BinaryIO, Final, Protocol, TypeAlias
 
 import lz4.frame
 import zstandard
 
+from spec_schema.diagnostics import SpecError
+from verifier.traces.faults import file_fault
+
 LARGEST = 1 << 37
 """Bytes. What unpacks to more is taken for a trap."""
+
+KEPT_FREE: Final = 0.1
+"""Share of a disk's free bytes that is left to others."""
+
+ELSEWHERE: Final = "set TMPDIR to a folder on a larger disk, or unpack the log yourself"
 
 _PIECE = 1 << 20
 _FAULTS = (OSError, EOFError, lzma.LZMAError, zstandard.ZstdError, RuntimeError, ValueError)
@@ -44,7 +53,14 @@ def is_packed(head: bytes) -> bool:
 
 
 def unpack_file(path: Path, target: Path) -> str:
-    """Unpacks as much as can be had into `target`; what stopped it early, or an empty text."""
+    """Unpacks as much as can be had into `target`; what stopped it early, or an empty text.
+
+    `target` stands in a folder of its own, in the system's temporary one.
+
+    Raises:
+        SpecError: the folder of `target` has no room for it (V301).
+    """
+    room = _room(target.parent)
     with ExitStack() as stack:
         file = stack.enter_context(path.open("rb"))
         head = file.read(8)
@@ -60,6 +76,29 @@ def unpack_file(path: Path, target: Path) -> str:
                 return str(error) or type(error).__name__
             if not piece:
                 return ""
-            out.write(piece)
+            if done + len(piece) > room:
+                raise _no_room(path, target.parent, room, "more is not free there")
+            try:
+                out.write(piece)
+                out.flush()
+            except OSError as error:
+                raise _no_room(path, target.parent, done, reason(error)) from error
             done += len(piece)
     return f"it unpacks to more than {LARGEST} bytes"
+
+
+def reason(error: OSError) -> str:
+    """What the system says of it."""
+    return (error.strerror or str(error)).lower()
+
+
+def _room(folder: Path) -> int:
+    """Bytes that may be written into the folder; a share of what is free stays free."""
+    return int((1.0 - KEPT_FREE) * shutil.disk_usage(folder).free)
+
+
+def _no_room(path: Path, folder: Path, size: int, why: str) -> SpecError:
+    message = (
+        f"it unpacks to more than {size / 1e6:.0f} MB, which {folder.parent} can't hold: {why}"
+    )
+    return file_fault(path, "V301", message, ELSEWHERE)
