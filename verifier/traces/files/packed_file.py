@@ -4,10 +4,9 @@ import bz2
 import gzip
 import lzma
 import shutil
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import BinaryIO, Final, Protocol, TypeAlias
+from typing import BinaryIO, Final, Protocol, TypeAlias, final
 
 import lz4.frame
 import zstandard
@@ -60,31 +59,44 @@ def unpack_file(path: Path, target: Path) -> str:
     Raises:
         SpecError: the folder of `target` has no room for it (V301).
     """
-    room = _room(target.parent)
-    with ExitStack() as stack:
-        file = stack.enter_context(path.open("rb"))
+    with path.open("rb") as file:
         head = file.read(8)
         magic = next(magic for magic in _OPENERS if head.startswith(magic))
         file.seek(0)
-        out = stack.enter_context(target.open("wb"))
-        reader = _OPENERS[magic](file)
+        pieces = _Pieces(_OPENERS[magic](file))
+        room = min(LARGEST, _room(target.parent))
         done = 0
-        while done < LARGEST:
-            try:
-                piece = reader.read(_PIECE)
-            except _FAULTS as error:
-                return str(error) or type(error).__name__
-            if not piece:
-                return ""
-            if done + len(piece) > room:
-                raise _no_room(path, target.parent, room, "more is not free there")
-            try:
-                out.write(piece)
-                out.flush()
-            except OSError as error:
-                raise _no_room(path, target.parent, done, reason(error)) from error
-            done += len(piece)
+        try:
+            with target.open("wb") as out:
+                for piece in pieces:
+                    done += len(piece)
+                    if done > room:
+                        break
+                    out.write(piece)
+        except OSError as error:
+            raise _no_room(path, target.parent, done, reason(error)) from error
+    if done <= room:
+        return pieces.fault
+    if room < LARGEST:
+        raise _no_room(path, target.parent, room, "more is not free there")
     return f"it unpacks to more than {LARGEST} bytes"
+
+
+@final
+class _Pieces:
+    """What is inside, piece by piece, until its end or until a `fault` stops it."""
+
+    def __init__(self, reader: _Readable) -> None:
+        self._reader = reader
+        self.fault = ""
+
+    def __iter__(self) -> Iterator[bytes]:
+        """The pieces; none is empty."""
+        try:
+            while piece := self._reader.read(_PIECE):
+                yield piece
+        except _FAULTS as error:
+            self.fault = str(error) or type(error).__name__
 
 
 def reason(error: OSError) -> str:
