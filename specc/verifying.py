@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, final
 from runtime.program import Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
-from spec_schema.load import load
+from spec_schema.load import Loaded, load
 from specc.loading import load_program
 from specc.spec_finding import Found, find_spec
 from verifier.examination import explain
@@ -113,9 +113,18 @@ def program_for_verify(path: Path) -> Program:
     """
     if path.suffix != ".specc":
         loaded = load(path)
-        if isinstance(loaded.spec, BehaviorSpec) and loaded.spec.field.module is not None:
-            message = "this field is Python code, and verify runs nobody's code"
-            name = loaded.spec.name
-            remedy = f"specc compile {path}, then specc verify TRACE --spec {name}.specc"
-            raise SpecError([loaded.error("V336", ("field", "module"), message, remedy, key=True)])
+        name = loaded.spec.name
+        remedy = f"specc compile {path}, then specc verify TRACE --spec {name}.specc"
+        refuse_code(loaded, "verify", remedy)
     return load_program(path)
+
+
+def refuse_code(loaded: Loaded, command: str, remedy: str) -> None:
+    """Stops `command` before it would run what the spec's author wrote.
+
+    Raises:
+        SpecError: the spec's field is code (V336).
+    """
+    if isinstance(loaded.spec, BehaviorSpec) and loaded.spec.field.module is not None:
+        message = f"this field is Python code, and {command} runs nobody's code"
+        raise SpecError([loaded.error("V336", ("field", "module"), message, remedy, key=True)])

@@ -7,7 +7,7 @@ edited in the spec's text; the edited text is compiled, and judged by the same r
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import final
+from typing import Final, final
 
 from spec_schema.load import Loaded
 from spec_schema.source import Source
@@ -21,10 +21,12 @@ from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
 from specc.fitting.reading import aims_of
 from specc.spec_finding import find_spec
-from specc.verifying import Clock, program_for_verify
+from specc.verifying import Clock, program_for_verify, refuse_code
 from verifier.diagnosis.diagnose import diagnose
 from verifier.report.report import Report, Standing, Verdict
 from verifier.report.wording import listed
+
+BY_HAND: Final = "specc verify says which numbers depart; edit them by hand, and compile the spec"
 
 
 def fit(
@@ -47,12 +49,14 @@ def fit(
         progress: is told what is done next, as a phrase.
 
     Raises:
-        SpecError: the spec or a log can't be used, or the edited text can't (V371 to V373).
+        SpecError: the spec or a log can't be used, or the edited text can't (V371 to V373), or the
+            spec's field is code (V336), which compiling the edited text would run.
     """
     tell = progress or _in_silence
     logs = logs_of(traces, clock, is_strict=strict)
     found = find_spec(logs.paths[0], None if spec is None else Path(spec), program_for_verify)
     loaded = own_text(found.program)
+    refuse_code(loaded, "fit", BY_HAND)
     cases = logs.judged(found.program, tell)
     told = pooled([_aims(case, tell) for case in cases])
     moves = moves_of(loaded, told.aims)

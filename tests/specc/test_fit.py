@@ -1,6 +1,7 @@
 """`specc.fit`: numbers move to what the robot does, in the user's text, and nothing else does."""
 
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,8 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mcap.writer import Writer
 
 import specc
+from runtime.artifact import to_bytes
 from spec_schema.diagnostics import SpecError
 from spec_schema.source import Source
 from specc.fitting.aims import Aim, Aims, UnitAim
@@ -327,3 +330,25 @@ def test_an_artifact_of_another_text_is_not_edited(tmp_path: Path) -> None:
     [said] = caught.value.diagnostics
     assert said.code == "V371"
     assert said.help == f"name the text to edit: --spec {spec}"
+
+
+def test_fit_runs_nobodys_code(tmp_path: Path) -> None:
+    """The log carries the artifact, which is a table; the text beside it calls a function."""
+    spec = tmp_path / "circling.yaml"
+    shutil.copy(SPECS / "circling.yaml", spec)
+    function = tmp_path / "circling_field.py"
+    shutil.copy(SPECS / "circling_field.py", function)
+    artifact = to_bytes(specc.load_program(spec))
+    function.write_text("raise SystemExit('a stranger ran this')\n", encoding="utf-8")
+    with (tmp_path / "run.mcap").open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        writer.add_attachment(0, 0, "circling.specc", "application/zip", artifact)
+        writer.finish()  # type: ignore[no-untyped-call]  # the library has no types here
+
+    with pytest.raises(SpecError) as caught:
+        specc.fit(tmp_path / "run.mcap")
+
+    [said] = caught.value.diagnostics
+    assert (said.code, said.source.name) == ("V336", str(spec))
+    assert said.message == "this field is Python code, and fit runs nobody's code"
