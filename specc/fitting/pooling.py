@@ -1,14 +1,21 @@
 """What several recordings say together: weighted means, and where they contradict one another."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
+from scipy import special
+
 from specc.fitting.aims import Aim, Aims, AnyAim
 from specc.fitting.rounding import rounded
+from verifier.fidelity.judging.departure import CONFIDENCE
 
-APART: Final = 1.5
-"""Values further apart than this many joint half widths of their intervals contradict."""
+ALARMS: Final = 0.01
+"""Share of all numbers on which the recordings agree that are taken for a contradiction."""
+
+HALF: Final = float(special.ndtri(0.5 + 0.5 * CONFIDENCE))
+"""Half the width of an interval, in standard deviations."""
 
 
 def pooled(told: Sequence[Aims]) -> Aims:
@@ -31,23 +38,39 @@ def pooled(told: Sequence[Aims]) -> Aims:
 def _mean(found: Sequence[Aim]) -> Aim:
     """Weighted by the inverse squares of the half widths."""
     exact = [aim for aim in found if aim.half <= 0.0]
-    if exact or len(found) == 1:
+    weights = [] if exact else [aim.half**-2.0 for aim in found]
+    total = sum(weights)
+    if len(found) == 1 or total <= 0.0:
         return (exact or found)[0]
-    weights = [aim.half**-2.0 for aim in found]
-    value = sum(w * aim.value for w, aim in zip(weights, found, strict=True)) / sum(weights)
+    value = sum(w * aim.value for w, aim in zip(weights, found, strict=True)) / total
     said = "; ".join(dict.fromkeys(aim.sentence for aim in found))
-    return replace(found[0], value=value, half=sum(weights) ** -0.5, sentence=said)
+    return replace(found[0], value=value, half=total**-0.5, sentence=said)
 
 
 def _is_contradiction(found: Sequence[AnyAim]) -> bool:
     numbers = [aim for aim in found if isinstance(aim, Aim)]
     if len(numbers) < len(found):
         return bool(numbers) or len({_shown(aim) for aim in found}) > 1
-    return any(
-        abs(one.value - other.value) > APART * (one.half**2 + other.half**2) ** 0.5
-        for one in numbers
-        for other in numbers
-    )
+    return _chance(numbers) < ALARMS
+
+
+def _chance(numbers: Sequence[Aim]) -> float:
+    """Of values at least as far apart as these, if all recordings are of one true value.
+
+    Cochran's Q, the weighted sum of squares about the weighted mean, is chi-square with one degree
+    of freedom less than there are values (Biometrics 10, 1954, 101-129). Where some are exact, it
+    is taken about them, and nothing is estimated.
+    """
+    exact = {aim.value for aim in numbers if aim.half <= 0.0}
+    if len(exact) > 1:
+        return 0.0
+    rough = [aim for aim in numbers if 0.0 < aim.half < math.inf]
+    freedom = len(rough) - (not exact)
+    if freedom < 1:
+        return 1.0
+    center = exact.pop() if exact else _mean(rough).value
+    q = sum((HALF * (aim.value - center) / aim.half) ** 2 for aim in rough)
+    return float(special.chdtrc(freedom, q))
 
 
 def _shown(aim: AnyAim) -> str:

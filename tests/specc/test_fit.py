@@ -134,6 +134,42 @@ def test_runs_that_contradict_one_another_leave_a_choice() -> None:
     assert said == "v1: the recordings contradict one another: 0.46 and 0.55"
 
 
+@pytest.mark.parametrize("count", [2, 5, 20])
+def test_runs_of_one_robot_contradict_one_another_once_in_a_hundred_times(count: int) -> None:
+    """However many there are: 20 recordings make 190 pairs, and some pair of them is far apart."""
+    rng = np.random.default_rng(5)
+    alarms = 0
+    for _ in range(3000):
+        sigmas = rng.uniform(0.002, 0.02, count)
+        alarms += bool(pooled(measured(0.46 + sigmas * rng.normal(size=count), sigmas)).choices)
+
+    # 30 are expected; a binomial of 3000 stays within 13 and 51 but once in 5000 times.
+    assert 13 <= alarms <= 51
+
+
+def test_runs_that_differ_by_halves_contradict_though_no_pair_does() -> None:
+    """Ten of each kind, 2 sigma apart: Q is 20, 10 squares of 1 on either side; at 4 it is 80."""
+    near, far = (np.repeat([0.46, 0.46 + apart], 10) for apart in (0.02, 0.04))
+
+    assert not pooled(measured(near, np.full(20, 0.01))).choices
+    assert len(pooled(measured(far, np.full(20, 0.01))).choices) == 1
+
+
+def test_a_measured_number_contradicts_an_exact_one_beyond_its_own_doubt() -> None:
+    exact, close, beyond = measured(np.array([0.46, 0.48, 0.49]), np.array([0.0, 0.01, 0.01]))
+
+    assert not pooled([exact, close]).choices
+    assert pooled([exact, beyond]).choices
+
+
+def measured(values: np.ndarray, sigmas: np.ndarray) -> list[Aims]:
+    """What each run tells of one number: its 95 % interval, 1.96 sigma to either side."""
+    return [
+        Aims((Aim(("control", "v1", "default"), "v1", float(v), 1.96 * float(s), "m/s", 1.0, ""),))
+        for v, s in zip(values, sigmas, strict=True)
+    ]
+
+
 def test_units_contradict_where_they_differ_and_not_where_reasons_do() -> None:
     one = UnitAim(("trace", "heading", "unit"), "unit of heading", "deg", "93 % of the error")
     same, other = replace(one, sentence="88 % of the error"), replace(one, text="mrad")
