@@ -10,7 +10,7 @@ from specc import __version__
 from specc.files import json_bytes, unknown_suffix, write_atomically
 from specc.pages.report_page import report_page
 from specc.pages.runs_page import runs_page
-from specc.runs import Outcome, Runs, Unusable, runs_of, unusable, verifications
+from specc.runs import Outcome, Runs, Unusable, runs_of, source_of, unusable, verifications
 from specc.runs_record import run_record, runs_record
 from specc.runs_text import runs_text
 from specc.verifying import Verification
@@ -85,11 +85,6 @@ def findings_by_source(runs: Runs) -> list[tuple[str, tuple[Finding, ...]]]:
 def _as_part(finding: Finding) -> Finding:
     is_open = finding.level is Level.WARNING and finding.rule in OPEN
     return replace(finding, level=Level.NOTE) if is_open else finding
-
-
-def source_of(outcome: Outcome) -> str:
-    """The recording that it is about."""
-    return outcome.source if isinstance(outcome, Unusable) else outcome.report.trace.source
 
 
 def findings_in(outcome: Outcome) -> tuple[Finding, ...]:

@@ -29,6 +29,11 @@ class Unusable:
 Outcome: TypeAlias = Verification | Unusable
 
 
+def source_of(outcome: Outcome) -> str:
+    """The recording that it is about."""
+    return outcome.source if isinstance(outcome, Unusable) else outcome.report.trace.source
+
+
 def verify_each(
     traces: Sequence[Path | str],
     spec: Path | str | Program | None = None,

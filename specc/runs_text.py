@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from spec_schema.diagnostics import render
-from specc.runs import Outcome, Runs, Unusable, counted, unusable, verifications
+from specc.runs import Outcome, Runs, Unusable, counted, source_of, unusable, verifications
 from verifier.report.examination_text import examination_text
 from verifier.report.layout import section, table, wrapped
 from verifier.report.report import Report, Verdict
@@ -51,7 +51,7 @@ def told_of(runs: Runs) -> list[tuple[str, tuple[str, ...]]]:
 
 def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     """Why each recording that did not pass did not: `run.mcap: …`."""
-    return tuple(f"{_source(each)}: {_why(each)}" for each in outcomes if _why(each))
+    return tuple(f"{source_of(each)}: {_why(each)}" for each in outcomes if _why(each))
 
 
 def columns_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
@@ -89,10 +89,6 @@ def _report_row(report: Report, columns: Sequence[str]) -> tuple[str, ...]:
     lost = str(sum(loss.count for loss in report.losses))
     verdict = report.verdict.upper()
     return (report.trace.source, verdict, *cells, seen, seconds(report.trace.judged), lost)
-
-
-def _source(outcome: Outcome) -> str:
-    return outcome.source if isinstance(outcome, Unusable) else outcome.report.trace.source
 
 
 def _why(outcome: Outcome) -> str:
