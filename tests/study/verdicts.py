@@ -6,6 +6,8 @@ A departure of exactly the tolerance deserves neither PASS nor FAIL. Wrong verdi
 upper end of their 95 % interval (Clopper and Pearson 1934). All but the oscillator depart alike
 everywhere. The oscillator's departure is its root mean square, which a PASS claims to be within
 the tolerance; while its largest somewhere is within, no FAIL is right.
+
+Below the gain stands what checks by finite differences find of it, and of as many faithful robots.
 """
 
 import argparse
@@ -19,13 +21,19 @@ from typing import Final, final
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import numpy as np
 from scipy import stats
 
-from tests.study.robots import BASE, ROBOTS, SOFT_WALL, SWING, WALL, Robot, drive, measured
+from runtime.program import Program
+from tests.study.finite_differences import CHECKS, alarms, statistics, usual
+from tests.study.robots import BASE, ROBOTS, SOFT_WALL, SWING, WALL, Array, Robot, drive, measured
 from tests.study.truth import deviation_of, largest, size
 from verifier.fidelity.verify import verify
+from verifier.traces.trace import Trace
 
 CHUNK: Final = 50
+FAITHFUL: Final = 1_000_000, 2_000_000
+"""Runs of faithful robots: those that a check is set by, and those that it is tried on."""
 
 
 @final
@@ -74,13 +82,19 @@ def main() -> None:
         for row in rows():
             if chosen.only in f"{row.robot.name} {row.note}":
                 print(_told(row, chosen.runs, pool), flush=True)
+                if row.robot.name == SOFT_WALL.name:
+                    print("\n".join(_told_by_rates(row, chosen.runs, pool)), flush=True)
+
+
+def chunks(runs: int, first: int = 0) -> list[range]:
+    """Runs in parts of one seed each."""
+    return [range(first + k, first + min(k + CHUNK, runs)) for k in range(0, runs, CHUNK)]
 
 
 def _told(row: Row, runs: int, pool: ProcessPoolExecutor) -> str:
     began = time.time()
-    planted, scale = _planted(row)
-    parts = [range(k, min(k + CHUNK, runs)) for k in range(0, runs, CHUNK)]
-    tasks = [pool.submit(verdicts, row, planted, scale, part) for part in parts]
+    planted, scale = planted_in(row)
+    tasks = [pool.submit(verdicts, row, planted, scale, part) for part in chunks(runs)]
     counts = sum((task.result() for task in tasks), Counter())
     shares = [counts[name] / runs for name in ("pass", "fail", "inconclusive")]
     figures = " ".join(f"{100 * share:5.1f}%" for share in shares)
@@ -97,7 +111,24 @@ def _told(row: Row, runs: int, pool: ProcessPoolExecutor) -> str:
     )
 
 
-def _planted(row: Row) -> tuple[float, float]:
+def _told_by_rates(row: Row, runs: int, pool: ProcessPoolExecutor) -> Iterator[str]:
+    """A line for each check by finite differences."""
+    planted, scale = planted_in(row)
+    setting, trial, found = (
+        np.concatenate(list(pool.map(of_rates, *zip(*tasks, strict=True))))
+        for tasks in (
+            [(row, 0.0, scale, part) for part in chunks(runs, FAITHFUL[0])],
+            [(row, 0.0, scale, part) for part in chunks(runs, FAITHFUL[1])],
+            [(row, planted, scale, part) for part in chunks(runs)],
+        )
+    )
+    faithful = usual(setting)
+    wrong, right = (100.0 * np.mean(alarms(each, faithful), axis=0) for each in (trial, found))
+    for name, false_alarms, power in zip(CHECKS, wrong, right, strict=True):
+        yield f"    {name:44s} finds {power:5.1f}%  of faithful robots {false_alarms:5.1f}%"
+
+
+def planted_in(row: Row) -> tuple[float, float]:
     """The deviation, and what the tolerances are multiplied with."""
     if row.robot.name == SOFT_WALL.name:
         return 0.05, size(row.robot, 0.05) / row.departure
@@ -108,14 +139,22 @@ def _planted(row: Row) -> tuple[float, float]:
 def verdicts(row: Row, planted: float, scale: float, runs: range) -> Counter[str]:
     """How often each verdict was given."""
     program = row.robot.program(scale)
-    drives = drive(row.robot, len(runs), row.seconds, planted, row.unrest, seed=1 + runs.start)
-    found: Counter[str] = Counter()
+    found = (verify(program, trace) for trace in traces(row, program, planted, runs))
+    return Counter(str(report.verdict) for report in found)
+
+
+def of_rates(row: Row, planted: float, scale: float, runs: range) -> Array:
+    """The statistics of the checks by finite differences, for every run."""
+    program = row.robot.program(scale)
+    return np.array([statistics(row.robot, t) for t in traces(row, program, planted, runs)])
+
+
+def traces(row: Row, program: Program, planted: float, runs: range) -> Iterator[Trace]:
+    """The recordings of these runs."""
+    seed = 1 + runs.start
+    drives = drive(row.robot, len(runs), row.seconds, planted, row.unrest, seed)
     for run in range(len(runs)):
-        trace = measured(
-            program, row.robot, drives, run, row.rate, row.noise, row.memory, 1 + runs.start
-        )
-        found[str(verify(program, trace).verdict)] += 1
-    return found
+        yield measured(program, row.robot, drives, run, row.rate, row.noise, row.memory, seed)
 
 
 def upper(wrong: int, runs: int) -> float:
