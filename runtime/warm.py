@@ -1,6 +1,9 @@
 """Compile every kernel once, with progress: the list of what there is to compile stands here."""
 
+import hashlib
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 
@@ -10,15 +13,13 @@ from runtime.integrators import adaptive, fixed_steps
 from runtime.interpolation import lookup, lookup_jacobian, tabulate
 from runtime.intervals import Interval, exactly
 from runtime.jets import SURE, Jet
-from runtime.kernels.cache import is_warm, mark_warm
+from runtime.kernels.cache import SOURCES, cache_folder, mark_warm
 from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.machine import evaluate
 from runtime.program import Field, Kind, Origin, Program, Role, State, Unit
 from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
-
-__all__ = ["is_warm", "warm"]
 
 TABLE = tabulate(np.zeros((2, 1)), (Axis("x", 0.0, 1.0, 2, periodic=False),), Method.LINEAR)
 
@@ -77,6 +78,12 @@ KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
 """Names, and small calls that compile; each kernel is compiled for one kind of arguments only."""
 
 
+def is_warm() -> bool:
+    """Whether every kernel was compiled and kept for this very copy of the sources."""
+    mark = _mark()
+    return mark is not None and mark.exists()
+
+
 def warm(progress: Callable[[str, int, int], None]) -> None:
     """Compile and keep every kernel; `progress(name, done, total)` is called before each."""
     for done, (name, call) in enumerate(KERNELS):
@@ -84,3 +91,22 @@ def warm(progress: Callable[[str, int, int], None]) -> None:
         call()
     progress("", len(KERNELS), len(KERNELS))
     mark_warm()
+    mark = _mark()
+    if mark is not None:
+        with suppress(OSError):
+            mark.touch()
+
+
+def _mark() -> Path | None:
+    """The file that says so; None where nothing can be kept.
+
+    numba finds machine code by the path of a source file and by when that was changed. So what was
+    compiled from one clone serves no other, though the text, and with it the folder, is the same.
+    """
+    folder = cache_folder()
+    if folder is None:
+        return None
+    digest = hashlib.sha256()
+    for path in sorted(SOURCES.glob("*.py")):
+        digest.update(f"{path} {path.stat().st_mtime_ns}\0".encode())
+    return folder / f"warm-{digest.hexdigest()[:16]}"

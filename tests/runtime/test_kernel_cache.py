@@ -17,6 +17,7 @@ from runtime.kernels import cache
 def nothing_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each test asks anew for the folder."""
     monkeypatch.setattr(cache, "cache_folder", cache.cache_folder.__wrapped__)
+    monkeypatch.setattr(warm, "cache_folder", cache.cache_folder)
     monkeypatch.setattr(cache, "source_hash", cache.source_hash.__wrapped__)
     monkeypatch.setattr(cache.CONFIG, "CACHE_DIR", "")
 
@@ -108,6 +109,25 @@ def test_warming_tells_what_it_compiles(monkeypatch: pytest.MonkeyPatch, tmp_pat
 
     assert compiled == ["a", "b"]
     assert told == [("a", 0, 2), ("b", 1, 2), ("", 2, 2)]
+
+
+def test_what_one_clone_compiled_is_no_help_to_another(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(warm, "KERNELS", ())
+    clone = Path(shutil.copytree(cache.SOURCES, tmp_path / "clone"))
+    assert not warm.is_warm()
+
+    warm.warm(lambda *_: None)
+    assert warm.is_warm()
+    monkeypatch.setattr(warm, "SOURCES", clone)
+    assert not warm.is_warm()
+
+    warm.warm(lambda *_: None)
+    assert warm.is_warm()
+    os.utime(clone / "vectors.py", (0.0, 0.0))
+    assert not warm.is_warm()
 
 
 def test_kernels_use_nothing_from_outside_their_folder() -> None:
