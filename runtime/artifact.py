@@ -4,7 +4,6 @@
 checked (`runtime.container`). The same program gives the same bytes on every machine.
 """
 
-import hashlib
 import mmap
 import os
 import tempfile
@@ -19,7 +18,7 @@ from runtime.container import ArtifactError, Member, join, split
 from runtime.program import Program
 from runtime.program_json import from_json, to_json
 
-__all__ = ["ArtifactError", "artifact_sha256", "from_bytes", "read", "to_bytes", "write"]
+__all__ = ["ArtifactError", "from_bytes", "read", "to_bytes", "write"]
 
 PROGRAM: Final = "program.json"
 MAGIC: Final = b"\x93NUMPY\x01\x00"
@@ -68,11 +67,6 @@ def read(path: Path) -> Program:
         raise ArtifactError("the file is empty")
     with path.open("rb") as file:
         return _program(memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)))
-
-
-def artifact_sha256(data: bytes) -> str:
-    """The hash by which reports name an artifact."""
-    return hashlib.sha256(data).hexdigest()
 
 
 def replace_file(path: Path, data: bytes) -> None:

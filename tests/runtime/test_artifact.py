@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from runtime.artifact import ArtifactError, artifact_sha256, from_bytes, read, to_bytes, write
+from runtime.artifact import ArtifactError, from_bytes, read, to_bytes, write
 from runtime.code import Code
 from runtime.container import Member, join
 from runtime.flow import flow_of, rates
@@ -161,12 +161,6 @@ def test_a_write_that_fails_leaves_the_old_file(
 
     assert list(tmp_path.iterdir()) == [path]
     assert path.read_bytes() == b"old"
-
-
-def test_the_name_of_an_artifact_is_its_hash() -> None:
-    # sha256("abc"), FIPS 180-2, appendix B.1
-    expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
-    assert artifact_sha256(b"abc") == expected
 
 
 def test_no_bit_can_be_flipped() -> None:

@@ -12,7 +12,6 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array, Booleans
-from verifier.diagnosis.altered import Effect
 from verifier.diagnosis.fitting import (
     Fit,
     information,
@@ -70,11 +69,6 @@ def halves_of(scene: Scene) -> list[Booleans]:
     pair = PAIR if scene.windows >= 4 * PAIR else 1
     half = (np.arange(scene.windows) // pair) % HALVES
     return [np.asarray(half == k) for k in range(HALVES)]
-
-
-def numbers_of(effects: tuple[Effect, ...]) -> int:
-    """How many numbers they take."""
-    return sum(len(effect.numbers) for effect in effects)
 
 
 def _is_free(fitted: Fit) -> Booleans:

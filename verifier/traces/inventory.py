@@ -25,14 +25,13 @@ class FieldInfo:
     """One value of a topic's messages; `path` is written as a spec's `trace:` block wants it.
 
     first, low, high: of the sampled numbers in SI or as logged; None for a text, or where no
-    number was finite. texts: the distinct texts, sorted; `first_text` the first of them in time.
+    number was finite. texts: the distinct texts, sorted.
     """
 
     path: str
     first: float | None
     low: float | None
     high: float | None
-    first_text: str
     texts: tuple[str, ...]
 
     @property
@@ -160,10 +159,9 @@ def _field_info(path: str, column: Column) -> FieldInfo:
     numbers = column.numbers[np.isfinite(column.numbers)]
     if numbers.size:
         first, low, high = float(numbers[0]), float(numbers.min()), float(numbers.max())
-        return FieldInfo(path, first, low, high, "", ())
-    texts = [text for text in column.texts or () if text]
-    distinct = tuple(sorted(set(texts))[:MOST_TEXTS])
-    return FieldInfo(path, None, None, None, texts[0] if texts else "", distinct)
+        return FieldInfo(path, first, low, high, ())
+    distinct = tuple(sorted({text for text in column.texts or () if text})[:MOST_TEXTS])
+    return FieldInfo(path, None, None, None, distinct)
 
 
 def _rate(times: Integers) -> float:

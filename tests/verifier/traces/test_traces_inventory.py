@@ -73,7 +73,6 @@ def test_the_inventory_of_json_and_of_what_cannot_be_read(workshop: Any, make: A
     }
     assert (fields["/state.x"].first, fields["/state.x"].high) == (0.0, 4.0)
     assert fields["/state.mode"].texts == ("go", "stop")
-    assert fields["/state.mode"].first_text == "stop"
     assert fields["/state.joints[1]"].high == 4.0
 
 
