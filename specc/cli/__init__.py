@@ -50,13 +50,15 @@ def _watched() -> int:
     import gc
 
     from specc.cli.interrupts import deaf, hear_at_once
+    from specc.cli.streams import flushed, let_readers_leave
 
     # Loading libraries makes no garbage, and looking for it takes a tenth of the start-up.
     gc.set_threshold(100_000)
     hear_at_once()
+    let_readers_leave()
     try:
         status = main()
-        status = _flushed() or status
+        status = flushed() or status
     except Exception:  # noqa: BLE001  the last line of defence
         import traceback
 
@@ -67,18 +69,3 @@ def _watched() -> int:
         status = Status.BUG
     deaf()
     return status
-
-
-def _flushed() -> int:
-    """0 where all results have reached standard output; else a status, and the reason is told."""
-    try:
-        sys.stdout.flush()
-    except OSError as error:
-        import os
-
-        from specc.cli.app import failed
-
-        # What is left in the buffer would be told again at the end, and by Python.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return failed(error)
-    return 0

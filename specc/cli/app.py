@@ -98,7 +98,7 @@ def failed(error: OSError) -> Status:
     why = str(error.strerror or error).lower()
     if error.filename:
         say(f"{error.filename}: {why}", "bold red")
-    elif error.errno != errno.EPIPE:
+    else:
         full = error.errno in {errno.ENOSPC, errno.EIO, errno.EBADF}
         say(f"standard output can't be written: {why}" if full else why, "bold red")
     return Status.BAD_INPUT
