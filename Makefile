@@ -1,6 +1,7 @@
 # `make` alone lists the targets. Each sets up what it needs: a .venv from the pinned constraints.
 PYTHON ?= python3
 BIN := .venv/bin
+KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
 .PHONY: help demo test check format bless study study-verify bench bench-large schema gallery clean
@@ -38,8 +39,7 @@ bless: .venv/ready ## rewrite the golden files from what comes out; read the dif
 	$(BIN)/pytest -q --bless
 
 schema: .venv/ready ## rewrite the JSON Schemas in docs/schema
-	$(BIN)/specc schema behavior > docs/schema/behavior.schema.json
-	$(BIN)/specc schema project > docs/schema/project.schema.json
+	for kind in $(KINDS); do $(BIN)/specc schema $$kind > docs/schema/$$kind.schema.json; done
 
 gallery: .venv/ready ## draw docs/img and docs/gallery.md
 	$(BIN)/python docs/draw_gallery.py

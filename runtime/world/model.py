@@ -140,9 +140,10 @@ class DriveKind(StrEnum):
 @final
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """What moves a body: its channels are `base.speed` and `base.turn`, or those of a holonomic one.
+    """What moves a body.
 
-    A holonomic body has `base.forward`, `base.left` and `base.turn`.
+    Its channels are `base.speed` and `base.turn`; of a holonomic one `base.forward`, `base.left`
+    and `base.turn`.
     track: distance of the wheels (m). traction: friction of the wheels on the floor, which limits
     what it can push. speed, turn: the largest set-points (m/s, rad/s). acceleration, spin: the
     largest rates of change (m/s², rad/s²).
