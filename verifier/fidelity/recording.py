@@ -8,6 +8,7 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.program import Program
 from verifier.fidelity.judging.evidence import Evidence, evidence_of
+from verifier.fidelity.judging.outside import Outside, outside_of
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import held
 from verifier.fidelity.stretches.segments import Segments, on_circle
@@ -25,7 +26,8 @@ class Recording:
     """What a verdict rests on. It is small: what was read and predicted is not kept.
 
     visited: the effective samples (N,) by name, inside judged windows. constant: the inputs that
-    never change here, with their values.
+    never change here, with their values. outside: the variables that mostly lie outside their
+    domain.
     """
 
     evidence: Evidence
@@ -35,6 +37,7 @@ class Recording:
     exclusions: tuple[Exclusion, ...]
     losses: tuple[Loss, ...]
     notes: tuple[str, ...]
+    outside: tuple[Outside, ...]
 
 
 def recording_of(program: Program, trace: Trace, study: Study) -> Recording:
@@ -49,6 +52,7 @@ def recording_of(program: Program, trace: Trace, study: Study) -> Recording:
         exclusions=(*study.segments.exclusions, *_left_over(study, inside)),
         losses=trace.losses,
         notes=trace.notes,
+        outside=outside_of(program, study.plan.needs),
     )
 
 

@@ -85,6 +85,7 @@ def _named(recording: Recording) -> Recording:
         exclusions=tuple(replace(e, cause=f"{source}: {e.cause}") for e in recording.exclusions),
         losses=tuple(replace(loss, cause=f"{source}: {loss.cause}") for loss in recording.losses),
         notes=tuple(f"{source}: {note}" for note in recording.notes),
+        outside=tuple(replace(e, reason=f"{source}: {e.reason}") for e in recording.outside),
     )
 
 

@@ -21,15 +21,17 @@ from spec_schema.source import Source
 from verifier.fidelity.judging.departure import CONFIDENCE
 from verifier.fidelity.judging.evidence import joined
 from verifier.fidelity.judging.judgement import results_of
+from verifier.fidelity.judging.outside import outside_of
 from verifier.fidelity.judging.regions import axes_of, coverage_of
-from verifier.fidelity.judging.verdict import decide, not_told, notes_of, too_short
+from verifier.fidelity.judging.uncompared import not_told, open_for, too_short
+from verifier.fidelity.judging.verdict import Finding, decide, notes_of, with_outside
 from verifier.fidelity.recording import Recording, identity_of, recording_of
 from verifier.fidelity.shooting.study import Study, study_of
 from verifier.fidelity.stretches.needs import Needs, needs_of, parts_of
 from verifier.fidelity.stretches.segments import Segments, segments_of
 from verifier.fidelity.switching.judge import switching_of
 from verifier.fidelity.switching.verdict import with_switching
-from verifier.report.report import Coverage, Report, SpecIdentity, Verdict
+from verifier.report.report import Coverage, Report, SpecIdentity
 from verifier.report.switching import Switching
 from verifier.traces.trace import Trace
 
@@ -96,11 +98,11 @@ def judgement_of(program: Program, trace: Trace) -> Judgement:
 def _compared(program: Program, trace: Trace, fidelity: Fidelity, needs: Needs) -> Judgement:
     segments = segments_of(program, needs, fidelity.horizon)
     if len(segments.spans) == 0:
-        reason = too_short(needs, segments, fidelity.horizon)
-        return Judgement(_unjudged(program, trace, segments, reason), None, None, None)
+        why = too_short(needs, segments, fidelity.horizon, outside_of(program, needs))
+        return Judgement(_unjudged(program, trace, segments, why), None, None, None)
     study = study_of(flow_of(program), fidelity, needs, segments, np.random.default_rng(SEED))
     if isinstance(study, str):
-        return Judgement(_unjudged(program, trace, segments, study), None, None, None)
+        return Judgement(_unjudged(program, trace, segments, open_for(study)), None, None, None)
     recording = recording_of(program, trace, study)
     return Judgement(report_on(program, (recording,)), study, recording, None)
 
@@ -132,7 +134,8 @@ def report_on(program: Program, recordings: Sequence[Recording]) -> Report:
     coverage = _coverage(program, fidelity, recordings)
     units = {name: part.unit for name, part in parts_of(program).items()}
     seconds = sum(each.identity.judged for each in recordings)
-    finding = decide(evidence, results, coverage, seconds, units)
+    outside = [each for recording in recordings for each in recording.outside]
+    finding = with_outside(decide(evidence, results, coverage, seconds, units), outside)
     return Report(
         verdict=finding.verdict,
         reasons=finding.reasons,
@@ -152,12 +155,12 @@ def report_on(program: Program, recordings: Sequence[Recording]) -> Report:
     )
 
 
-def _unjudged(program: Program, trace: Trace, segments: Segments | None, reason: str) -> Report:
+def _unjudged(program: Program, trace: Trace, segments: Segments | None, why: Finding) -> Report:
     """The report of a trace in which nothing can be compared."""
     return Report(
-        verdict=Verdict.INCONCLUSIVE,
-        reasons=(reason,),
-        advice=(),
+        verdict=why.verdict,
+        reasons=why.reasons,
+        advice=why.advice,
         horizon=fidelity_of(program).horizon,
         confidence=CONFIDENCE,
         variables=(),

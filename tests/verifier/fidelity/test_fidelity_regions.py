@@ -59,4 +59,5 @@ def test_a_robot_that_is_weak_on_one_side_fails_there(scenes: ModuleType) -> Non
     assert worst is not None
     assert worst.mean > 0.0
     assert worst.bounds["goal"][1] < 0.0
-    assert any("x is worst for" in reason and "above" in reason for reason in report.reasons)
+    assert ": where goal is " in report.reasons[0]
+    assert "above the prediction" in report.reasons[0]

@@ -423,7 +423,8 @@ def test_unrest_does_not_hide_a_wrong_gain(scenes: ModuleType) -> None:
     report = verify(wrong, drive)
 
     assert report.verdict is Verdict.FAIL
-    assert "comes back wherever the robot is in the same situation" in report.reasons[0]
+    assert "systematically: where x is" in report.reasons[0]
+    assert report.reasons[-1].startswith("systematic is what repeats")
 
 
 def test_noise_that_the_spec_declares_is_not_estimated(scenes: ModuleType) -> None:

@@ -1,5 +1,7 @@
 """Why the verdict is what it is, and what to do next: sentences for a tired engineer."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from runtime.arrays import Array, Booleans
@@ -8,6 +10,7 @@ from verifier.fidelity.judging.evidence import Evidence
 from verifier.report.report import (
     CellAxis,
     Coverage,
+    HorizonFigure,
     Interval,
     RegionMean,
     Standing,
@@ -25,33 +28,47 @@ HOPELESS = 100.0
 """Where so many times the data were needed, more data is no advice."""
 
 
-def exceeded(result: VariableResult) -> str:
-    """The variable, by how much, against what."""
+def exceeded(result: VariableResult, units: dict[str, Unit]) -> str:
+    """The variable, by how much, against what, how much of it is systematic, and where.
+
+    `heading departs by 0.033 rad after 5 s (0.02 rad is allowed), at least 0.028 rad of it
+    systematically: where it should fall by 0.4 rad, it ends 0.034 rad above the prediction`.
+    """
     figure, unit = result.declared, result.unit
+    least = quantity(result.systematic, unit)
+    share = (
+        f", at least {least} of it systematically"
+        if result.systematic <= figure.departure
+        else f", and in some situations by at least {least} systematically"
+    )
     return (
         f"{result.name} departs by {quantity(figure.departure, unit)} after"
-        f" {number(figure.horizon)} s (95 % interval {_interval(figure.interval, unit)});"
-        f" {quantity(result.tolerance, unit)} is allowed; at its worst, at least"
-        f" {quantity(result.systematic, unit)} is no chance: it comes back wherever the robot is in"
-        " the same situation"
+        f" {number(figure.horizon)} s ({quantity(result.tolerance, unit)} is allowed){share}"
+        f"{_worst(result, units)}"
     )
 
 
-def worst(result: VariableResult, units: dict[str, Unit]) -> list[str]:
-    """In which direction it is worst; nothing where no part stands out."""
+def what_is_systematic() -> str:
+    """The word that every sentence on a FAIL uses, explained once."""
+    return (
+        "systematic is what repeats whenever the robot is in the same situation: neither the noise"
+        " of the sensors nor chance explains it"
+    )
+
+
+def _worst(result: VariableResult, units: dict[str, Unit]) -> str:
+    """In which situation it is worst, and in which direction; none may stand out."""
     region = result.worst
-    if region is None or region.interval.low <= 0.0 <= region.interval.high:
-        return []
+    if region is None or abs(region.mean) <= result.tolerance:
+        return ": windows that are alike err alike, some above and some below the prediction"
     side = "above" if region.mean > 0.0 else "below"
     ends = sorted([abs(region.interval.low), abs(region.interval.high)])
     place = where(region, result, units)
-    return [
-        (
-            f"{result.name} is worst {f'for {place}' if place else 'everywhere'}: there the robot"
-            f" ends {quantity(abs(region.mean), result.unit)} {side} the prediction on average"
-            f" (95 % interval {span(ends[0], ends[1], result.unit)}, {region.windows} windows)"
-        )
-    ]
+    return (
+        f": {f'{place}, it' if place else 'it'} ends {quantity(abs(region.mean), result.unit)}"
+        f" {side} the prediction on average (95 % interval {span(ends[0], ends[1], result.unit)},"
+        f" {region.windows} windows)"
+    )
 
 
 def proportion(evidence: Evidence, result: VariableResult) -> list[str]:
@@ -113,9 +130,9 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
     )
     if figure.interval.low > limit:
         return (
-            f"{departs}, but nothing foretells by how much: single runs scatter by"
+            f"{departs}, but nothing foretells by how much: single windows scatter by"
             f" {quantity(result.scatter, unit)}, and only {quantity(result.systematic, unit)} is"
-            " shown to come back; the robot is restless, or something moves it that the spec does"
+            " shown to repeat; the robot is restless, or something moves it that the spec does"
             " not know"
         )
     if figure.interval.high > limit:
@@ -125,8 +142,9 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
         )
     open_ones = [r for r in result.regions if r.standing is not Standing.WITHIN]
     region = max(open_ones, key=lambda r: max(abs(r.interval.low), abs(r.interval.high)))
+    place = where(region, result, units)
     return (
-        f"{departs} over all, but for {where(region, result, units)} on average by"
+        f"{departs} over all, but {f'{place} ' if place else ''}on average by"
         f" {quantity(region.mean, unit)} (95 % interval {_interval(region.interval, unit)},"
         f" {region.windows} windows)"
     )
@@ -170,26 +188,45 @@ def allow_scatter(result: VariableResult) -> list[str]:
     ]
 
 
-def more_data(result: VariableResult, judged: float) -> str:
-    """How much data of this kind would decide about a variable."""
-    figure = result.declared
-    if not np.isfinite(figure.interval.high):
-        return (
-            f"record longer: {seconds(6.0 * figure.horizon)} of judged driving (six horizons) is"
-            " the least that gives an interval"
+def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
+    """How much data of this kind would decide about variables that nothing but data is short of."""
+    if not results:
+        return []
+    if not all(np.isfinite(result.declared.interval.high) for result in results):
+        horizon = results[0].declared.horizon
+        return [too_few(horizon)]
+    factors = {result.name: _more(result.declared) for result in results}
+    hopeless = [name for name, factor in factors.items() if factor > HOPELESS]
+    told = []
+    if hopeless:
+        verb, whose = ("departs", "its") if len(hopeless) == 1 else ("depart", "their")
+        told.append(
+            f"{listed(hopeless)} {verb} by just about {whose} tolerance: more data of this kind"
+            " will hardly decide; reconsider the tolerance or the spec"
         )
+    others = [name for name, factor in factors.items() if factor <= HOPELESS]
+    if others:
+        enough = max(factors[name] for name in others) * judged
+        told.append(
+            f"about {seconds(enough)} of judged driving like this (now {seconds(judged)}) would"
+            f" decide about {listed(others)}, if departures stay what they are"
+        )
+    return told
+
+
+def too_few(horizon: float) -> str:
+    """How much data gives an interval at all."""
+    return (
+        f"record longer: {seconds(6.0 * horizon)} of judged driving (six horizons) is the least"
+        " that gives an interval"
+    )
+
+
+def _more(figure: HorizonFigure) -> float:
+    """By how much data has to be multiplied until the interval no longer holds the tolerance."""
     is_above = figure.departure > figure.tolerance
     edge = figure.interval.low if is_above else figure.interval.high
-    factor = ((edge - figure.departure) / (figure.tolerance - figure.departure or 1e-300)) ** 2
-    if factor > HOPELESS:
-        return (
-            f"{result.name} departs by just about its tolerance: more data of this kind will"
-            " hardly decide; reconsider the tolerance or the spec"
-        )
-    return (
-        f"about {seconds(factor * judged)} of judged driving like this (now {seconds(judged)})"
-        f" would decide about {result.name}, if its departure stays what it is"
-    )
+    return float(((edge - figure.departure) / (figure.tolerance - figure.departure or 1e-300)) ** 2)
 
 
 def scope(coverage: Coverage) -> str:
@@ -234,16 +271,25 @@ def _unseen_ranges(axis: CellAxis, empty: Booleans) -> list[str]:
 
 
 def where(region: RegionMean, result: VariableResult, units: dict[str, Unit]) -> str:
-    """A part in words: `x from 0 to 1 m, moves of 0.3 m`; empty where it is everything."""
-    told = [f"{name} {value}" for name, value in region.values.items()]
+    """A situation in words, empty where it is every one.
+
+    `where x is 0 to 1 m and it should fall by 0.3 m`.
+    """
+    told = [f"{name} is {value}" for name, value in region.values.items()]
     told += [
-        f"{name} from {span(low, high, units[name])}" for name, (low, high) in region.bounds.items()
+        f"{name} is {span(low, high, units[name])}" for name, (low, high) in region.bounds.items()
     ]
     if region.moved is not None:
-        told.append(f"moves of {quantity(region.moved, result.unit)}")
+        told.append(f"it should {_way(region.moved, result.unit)}")
     if region.hurried is not None:
-        told.append(f"what drives it {'rising' if region.hurried > 0.0 else 'falling'}")
-    return ", ".join(told)
+        told.append(f"its rate should {'rise' if region.hurried > 0.0 else 'fall'} meanwhile")
+    return f"where {listed(told)}" if told else ""
+
+
+def _way(moved: float, unit: Unit) -> str:
+    if moved == 0.0:
+        return "stay"
+    return f"{'rise' if moved > 0.0 else 'fall'} by {quantity(abs(moved), unit)}"
 
 
 def _declared(evidence: Evidence, result: VariableResult) -> tuple[Array, Array]:

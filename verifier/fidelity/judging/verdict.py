@@ -1,5 +1,6 @@
 """From the figures to the verdict, with its reasons and what to do next."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import final
 
@@ -8,10 +9,9 @@ import numpy as np
 from runtime.program import Unit
 from verifier.fidelity.judging import sentences
 from verifier.fidelity.judging.evidence import Evidence
-from verifier.fidelity.stretches.needs import Needs
-from verifier.fidelity.stretches.segments import Segments
+from verifier.fidelity.judging.outside import Outside
 from verifier.report.report import Coverage, Standing, VariableResult, Verdict
-from verifier.report.wording import listed, number, percent, seconds, span
+from verifier.report.wording import listed, number, percent, span
 
 MOST_LOST = 0.1
 """With a larger share of predictions leaving the domain, there is no PASS."""
@@ -45,18 +45,11 @@ def decide(
     failed = [r for r in results if r.standing is Standing.EXCEEDED]
     if failed:
         return _failed(evidence, failed, units)
-    doubts = [sentences.undecided(r, units) for r in results if r.standing is Standing.UNDECIDED]
-    advice = []
-    for result in results:
-        if result.standing is Standing.UNDECIDED:
-            noisy = sentences.too_noisy(result)
-            restless = [] if noisy else sentences.allow_scatter(result)
-            advice += noisy or restless or [sentences.more_data(result, judged)]
+    doubts = [*_lost(evidence), *(sentences.undecided(r, units) for r in results if _is_open(r))]
     if not coverage.is_reached:
         doubts.append(sentences.uncovered(coverage))
-        advice += sentences.unseen(coverage)
-    doubts += _lost(evidence)
     if doubts:
+        advice = _advice(results, coverage, judged)
         return Finding(Verdict.INCONCLUSIVE, tuple(doubts), tuple(dict.fromkeys(advice)))
     reasons = [sentences.within(r) for r in results]
     reasons += [sentence for r in results for sentence in sentences.unmoved(evidence, r)]
@@ -65,12 +58,37 @@ def decide(
     return Finding(Verdict.PASS, tuple(reasons), ())
 
 
+def with_outside(finding: Finding, outside: Sequence[Outside]) -> Finding:
+    """The finding with what lies outside its domain: first where it leaves the verdict open."""
+    told = tuple(each.reason for each in outside)
+    is_open = finding.verdict is Verdict.INCONCLUSIVE
+    reasons = (*told, *finding.reasons) if is_open else (*finding.reasons, *told)
+    return Finding(finding.verdict, reasons, (*(each.advice for each in outside), *finding.advice))
+
+
+def _is_open(result: VariableResult) -> bool:
+    return result.standing is Standing.UNDECIDED
+
+
+def _advice(results: tuple[VariableResult, ...], coverage: Coverage, judged: float) -> list[str]:
+    """What would decide: what no data would mend first, then where to drive, then how long."""
+    advice: list[str] = []
+    short: list[VariableResult] = []
+    for result in filter(_is_open, results):
+        special = sentences.too_noisy(result) or sentences.allow_scatter(result)
+        advice += special
+        short += [] if special else [result]
+    if not coverage.is_reached:
+        advice += sentences.unseen(coverage)
+    return advice + sentences.more_data(short, judged)
+
+
 def _failed(evidence: Evidence, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:
     reasons = []
     for result in failed:
-        reasons.append(sentences.exceeded(result))
+        reasons.append(sentences.exceeded(result, units))
         reasons += sentences.proportion(evidence, result)
-        reasons += sentences.worst(result, units)
+    reasons.append(sentences.what_is_systematic())
     advice = (
         "before blaming the robot, check units, signs and the `delay:` of every entry in `trace:`",
     )
@@ -106,28 +124,6 @@ def _lost(evidence: Evidence) -> list[str]:
     return [
         f"{percent(share)} of the predictions left the spec's domain, while the robot stayed inside"
     ]
-
-
-def not_told(needs: Needs) -> str:
-    """Which variables without which nothing can be compared are not in the trace, if any."""
-    names = [*needs.missing, *(each.name for each in needs.signals if not each.is_known)]
-    if not names:
-        return ""
-    verb = "is" if len(names) == 1 else "are"
-    return f"{listed(names)} {verb} not in the trace, and nothing can be compared without"
-
-
-def too_short(needs: Needs, segments: Segments, horizon: float) -> str:
-    """Why no window fits."""
-    first, last = segments.whole
-    if last - first < horizon:
-        return f"the trace covers {first:.1f}-{last:.1f} s, the check needs {horizon:.1f} s"
-    causes = [f"{e.cause} ({seconds(e.seconds)})" for e in segments.exclusions]
-    base = needs.series[needs.base].name
-    return (
-        f"no stretch of {base} is as long as the horizon of {number(horizon)} s;"
-        f" taken out: {listed(causes)}"
-    )
 
 
 def notes_of(evidence: Evidence, results: tuple[VariableResult, ...]) -> list[str]:

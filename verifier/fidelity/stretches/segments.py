@@ -53,9 +53,13 @@ def segments_of(program: Program, needs: Needs, horizon: float) -> Segments:
         exclusions += _exclusion(cause, left, kept, base)
         left = kept
     long_enough = left[left[:, 1] - left[:, 0] >= horizon * (1.0 - EDGE)]
-    cause = f"shorter than the horizon of {horizon:g} s"
-    exclusions += _exclusion(cause, left, long_enough, base)
+    exclusions += _exclusion(too_short_cause(horizon), left, long_enough, base)
     return Segments(long_enough, tuple(exclusions), (float(base[0]), float(base[-1])))
+
+
+def too_short_cause(horizon: float) -> str:
+    """The cause of what is left out because the others have left too little of it."""
+    return f"shorter than the horizon of {horizon:g} s"
 
 
 def spans_between_exclusions(program: Program, needs: Needs) -> Array:
@@ -77,7 +81,10 @@ def _causes(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Arr
         for each in _covered(series, hold)
     ]
     judged = [("judge_when is false", _judged(program, needs, whole))]
-    domains = _domains(program, needs, whole)
+    domains = [
+        (f"{part.name} outside its domain", inside)
+        for part, _, inside in inside_domains(program, needs, whole)
+    ]
     return [*covered, *judged, *domains]
 
 
@@ -159,8 +166,10 @@ def on_circle(part: State | Control, values: Array) -> Array:
     return np.asarray(part.low + np.mod(values - part.low, part.high - part.low))
 
 
-def _domains(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Array]]:
-    """Where each variable is inside its domain.
+def inside_domains(
+    program: Program, needs: Needs, whole: Array
+) -> list[tuple[State | Control, Series, Array]]:
+    """Each variable that was logged, and where (k, 2) it is inside its domain.
 
     Of a predicted state, a sample outside takes the time from the sample before it to the one
     after it; of an input, the time for which it is held.
@@ -172,10 +181,7 @@ def _domains(program: Program, needs: Needs, whole: Array) -> list[tuple[str, Ar
     parts = parts_of(program)
     told = [(parts[each.name], each.series) for each in needs.inputs if each.series is not None]
     found += [(part, series, series.times) for part, series in told]
-    return [
-        (f"{part.name} outside its domain", _inside(part, series, before, whole))
-        for part, series, before in found
-    ]
+    return [(part, series, _inside(part, series, before, whole)) for part, series, before in found]
 
 
 def _inside(part: State | Control, series: Series, before: Array, whole: Array) -> Array:
