@@ -9,7 +9,7 @@ from spec_schema.kinds import MODELS
 
 
 def json_schema(kind: str) -> dict[str, Any]:
-    """The schema of `behavior` or `project` files. Rules between keys are `specc check`'s alone."""
+    """The schema of one kind of file. Rules between keys are `specc check`'s alone."""
     schema = MODELS[kind].model_json_schema(schema_generator=_Generator)
     return {"$schema": _Generator.schema_dialect, "title": f"specc {kind}", **schema}
 

@@ -1,16 +1,18 @@
 """`specc schema`: the language as JSON Schema, for editors."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 import typer
 
 from specc.cli.console import print_json
 
+Kind: TypeAlias = Literal[
+    "behavior", "body", "arbiter", "architecture", "world", "scenario", "project"
+]
+
 
 def schema(
-    kind: Annotated[
-        Literal["behavior", "project"], typer.Argument(help="The kind of spec.")
-    ] = "behavior",
+    kind: Annotated[Kind, typer.Argument(help="The kind of spec.")] = "behavior",
 ) -> None:
     """Print the JSON Schema of a kind of spec, so that an editor completes and checks keys.
 
