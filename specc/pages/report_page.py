@@ -4,7 +4,6 @@ The page's contents are gathered as data; the template only lays them out, and e
 text, because names in it come from logs and specs of strangers.
 """
 
-from datetime import UTC, datetime
 from typing import Final
 
 import jinja2
@@ -31,6 +30,7 @@ from specc.pages.sentences import (
 )
 from verifier.report.examination import Examination
 from verifier.report.report import Report, TraceIdentity, VariableResult, Verdict
+from verifier.report.wording import date_of
 
 SIGNS: Final = {Verdict.PASS: "✓", Verdict.FAIL: "✗", Verdict.INCONCLUSIVE: "?"}
 COLUMNS: Final = ("tolerance", "departure", "its interval", "RMSE", "mean error", "windows")
@@ -175,8 +175,8 @@ def _provenance(report: Report) -> tuple[tuple[str, str], ...]:
 
 
 def _when(trace: TraceIdentity) -> str:
-    """The log's own clock as a date, where it is set; clocks that start in 1970 are not."""
-    year = 365.25 * 86400.0
-    if not year < trace.start < 200.0 * year:
+    """The log's own clock as a date, where it is set."""
+    date = date_of(trace.start)
+    if date is None:
         return f"clock of the log at the first sample: {seconds(trace.start)}"
-    return f"{datetime.fromtimestamp(trace.start, UTC):%Y-%m-%d %H:%M:%S} UTC"
+    return f"{date:%Y-%m-%d %H:%M:%S} UTC"

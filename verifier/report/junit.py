@@ -9,7 +9,6 @@ Jenkins' xUnit plugin (junit-10.xsd), whose `file` and `line` of a test case Git
 
 import re
 from collections.abc import Collection, Sequence
-from datetime import UTC, datetime
 from typing import Final
 from xml.etree import ElementTree as ET
 
@@ -17,11 +16,10 @@ from verifier.report.examination import Examination
 from verifier.report.places import place_of
 from verifier.report.report import Report, Standing
 from verifier.report.requirements import Requirement, requirements_of
+from verifier.report.wording import date_of
 
 FORBIDDEN: Final = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """What XML 1.0 can't hold, not even escaped."""
-YEAR: Final = 365.25 * 86400.0
-"""A log's clock that is not set starts in 1970: such a date is left out."""
 
 
 def as_junit(
@@ -46,9 +44,9 @@ def _suite(examination: Examination, *, is_part: bool) -> ET.Element:
     report = examination.report
     cases = [_case(each, report, is_part=is_part) for each in requirements_of(examination)]
     attributes = {"name": clean(report.trace.source), **_counted(cases)}
-    start = report.trace.start
-    if YEAR < start < 200.0 * YEAR:
-        attributes["timestamp"] = f"{datetime.fromtimestamp(start, UTC):%Y-%m-%dT%H:%M:%S}"
+    date = date_of(report.trace.start)
+    if date is not None:
+        attributes["timestamp"] = f"{date:%Y-%m-%dT%H:%M:%S}"
     suite = ET.Element("testsuite", attributes)
     suite.append(_properties(report))
     suite.extend(cases)

@@ -1,8 +1,14 @@
 """Numbers and quantities as people read them. Values come in SI and leave in the user's unit."""
 
 import math
+from datetime import UTC, datetime
+from typing import Final
 
 from runtime.program import Unit
+
+YEAR: Final = 365.25 * 86400.0
+CENTURIES: Final = 200.0 * YEAR
+"""Later than so many seconds after 1970 no robot was recorded."""
 
 
 def number(value: float) -> str:
@@ -64,6 +70,17 @@ def seconds(value: float) -> str:
         return f"{number(value)} s"
     minutes = round(value / 60.0)
     return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def date_of(stamp: float) -> datetime | None:
+    """The date of a stamp in seconds since 1970, where the clock that made it was set.
+
+    One that is not set counts from when it was switched on: as if it were 1970.
+
+    >>> str(date_of(1.7e9)), date_of(12.0)
+    ('2023-11-14 22:13:20+00:00', None)
+    """
+    return datetime.fromtimestamp(stamp, UTC) if YEAR < stamp < CENTURIES else None
 
 
 def listed(names: list[str]) -> str:
