@@ -8,8 +8,9 @@ from runtime.claim import Claim
 from runtime.program import Unit
 from verifier.report.features import ComparedFeature, Estimate, FeatureNumber, FeatureStanding
 from verifier.robot_topology.declared import claim_on, period_allowed, reach_allowed
-from verifier.robot_topology.laps import laps_of, on_cycle, period_of_laps
-from verifier.robot_topology.loops import MeanLap, mean_lap
+from verifier.robot_topology.laps import Laps, laps_of, nearest_cycle, on_cycle, period_of_laps
+from verifier.robot_topology.loops import MeanLap, mean_lap, spec_swing
+from verifier.robot_topology.mode_laps import laps_by_modes, round_of
 from verifier.robot_topology.refitted_cycles import RefittedCycle, refitted_cycle
 from verifier.robot_topology.refitted_points import RefitView
 from verifier.robot_topology.scene import Scene
@@ -44,7 +45,7 @@ def _feature(
 ) -> ComparedFeature:
     cycle = scene.portrait.cycles[index]
     claim = claim_on(scene, is_cycle=True, index=index)
-    laps = laps_of(scene, cycle)
+    laps = tuple(each for each in _laps(scene, cycle) if nearest_cycle(scene, each) == index)
     count = sum(each.count for each in laps)
     period = period_of_laps(laps, confidence)
     lap = None if period is None else mean_lap(laps, cycle, confidence, rng)
@@ -67,6 +68,14 @@ def _feature(
     return replace(plain, sentence=sentence_on(plain, _manner(plain, is_seen=lap is not None)))
 
 
+def _laps(scene: Scene, cycle: Cycle) -> tuple[Laps, ...]:
+    """By the changes of mode where the cycle has them, else by the phase of the state."""
+    way = round_of(cycle)
+    if way is None or not len(scene.changes):
+        return laps_of(scene, cycle)
+    return laps_by_modes(scene.stretches, scene.changes, way)
+
+
 def _numbers(
     scene: Scene,
     cycle: Cycle,
@@ -76,8 +85,7 @@ def _numbers(
 ) -> tuple[FeatureNumber, ...]:
     """The period, the amplitude on each axis, and the ends where a claim speaks of them."""
     period, lap = seen
-    spec = on_cycle(cycle, np.arange(4 * DRAWN) / (4 * DRAWN))
-    low, high = spec.min(axis=0), spec.max(axis=0)
+    low, high, amplitude = spec_swing(cycle)
     allowed = period_allowed(scene, claim, cycle)
     by_refit = None if refit is None else refit.period
     found = [_number("period", SECOND, cycle.period, (period, by_refit), allowed)]
@@ -86,7 +94,7 @@ def _numbers(
         if cycle.turns[j]:
             continue
         allowed = reach_allowed(scene, claim, j)
-        values = (0.5 * (high[j] - low[j]), low[j], high[j])
+        values = (amplitude[j], low[j], high[j])
         names = (f"amplitude of {axis.name}", f"lowest {axis.name}", f"highest {axis.name}")
         both = [
             (None, None, None)
@@ -119,5 +127,11 @@ def _manner(feature: ComparedFeature, *, is_seen: bool) -> str:
     if is_seen:
         return f"the robot makes {feature.visits} laps with a"
     if feature.standing is FeatureStanding.NOT_VISITED:
-        return "not visited: the robot does not make three laps of it in this trace"
+        return f"not visited: the robot makes {_few(feature.visits)} of it in this trace"
     return "the field refitted to the robot has one with a"
+
+
+def _few(laps: int) -> str:
+    if laps == 0:
+        return "no settled lap"
+    return f"only {laps} settled lap{'' if laps == 1 else 's'}, three are needed,"

@@ -46,12 +46,15 @@ class Laps:
     """Laps in one stretch: `starts` (k + 1,), when each begins and the last one ends.
 
     passages (sections, k + 1): times at which each section was passed, NaN where it is not told.
-    stretch: that they lie in.
+    stretch: that they lie in. arcs: phases (sections,) of the changes of mode that the sections
+    are, empty for a smooth cycle. doubt: of one passage, s, by the sampling of the mode.
     """
 
     stretch: Stretch
     starts: Array
     passages: Array
+    arcs: Array
+    doubt: float
 
     @property
     def count(self) -> int:
@@ -62,7 +65,35 @@ class Laps:
 def laps_of(scene: Scene, cycle: Cycle) -> tuple[Laps, ...]:
     """The robot's laps around `cycle` in each stretch, once they have settled."""
     tree, scale = _tree(scene, cycle)
-    found = [_laps(scene, cycle, stretch, tree, scale) for stretch in scene.stretches]
+    return tuple(
+        laps for stretch in scene.stretches for laps in _laps(scene, cycle, stretch, tree, scale)
+    )
+
+
+def nearest_cycle(scene: Scene, laps: Laps) -> int:
+    """Which cycle of the portrait the laps lie closest to."""
+    cycles = scene.portrait.cycles
+    if len(cycles) == 1:
+        return 0
+    first, last = np.searchsorted(laps.stretch.times, laps.starts[[0, -1]])
+    values = _embedded(scene, laps.stretch.values[first:last])
+    scale = _embedded_widths(scene)
+    away = [
+        np.median(KDTree(_embedded(scene, _sampled(cycle)) / scale).query(values / scale)[0])
+        for cycle in cycles
+    ]
+    return int(np.argmin(away))
+
+
+def settled_runs(
+    stretch: Stretch, passages: Array, good: list[bool], phases: Array, doubt: float
+) -> tuple[Laps, ...]:
+    """Each run of good laps between `passages` (sections, k + 1), without those that settle."""
+    found = []
+    for first, last in _runs(good):
+        begin = first + _unsettled(stretch, passages[0, first : last + 1])
+        part = passages[:, begin : last + 1]
+        found.append(Laps(stretch, part[0], part, phases, doubt))
     return tuple(laps for laps in found if laps.count)
 
 
@@ -71,21 +102,24 @@ def period_of_laps(laps: tuple[Laps, ...], confidence: float) -> Estimate | None
 
     Times of successive laps are correlated in two ways: noise of a passage makes one longer and
     the next one shorter by as much, while a wandering pace keeps it. Both are in the first two
-    autocovariances of the laps; with few laps the noise's help is not counted on.
+    autocovariances of the laps, taken within each stretch; with few laps the noise's help is not
+    counted on. A mode that is sampled seldom tells the ends of a stretch no better than that.
     """
-    times = np.concatenate([_durations(each) for each in laps]) if laps else np.empty(0)
-    times = times[np.isfinite(times)]
-    count = len(times)
+    each = [_durations(one) for one in laps]
+    known = np.concatenate(each) if each else np.empty(0)
+    known = known[np.isfinite(known)]
+    count = len(known)
     if count < FEWEST:
         return None
-    mean = float(np.mean(times))
-    deviation = times - mean
-    own = float(np.sum(deviation**2)) / (count - 1)
-    next_ = float(np.sum(deviation[1:] * deviation[:-1])) / (count - 1)
+    mean = float(np.mean(known))
+    own = float(np.sum((known - mean) ** 2)) / (count - 1)
+    pairs = [(one - mean)[1:] * (one - mean)[:-1] for one in each]
+    shared = float(np.nansum(np.concatenate(pairs)))
     variance = own / count
-    if count >= MANY or next_ > 0.0:
-        variance = max((own + 2.0 * next_ * (1.0 - 1.0 / count)) / count, own / count**2)
-    return student(mean, float(np.sqrt(variance)), count, confidence)
+    if count >= MANY or shared > 0.0:
+        variance = max((own + 2.0 * shared / count) / count, len(laps) * own / count**2)
+    rounding = sum(one.doubt**2 / 6.0 for one in laps) / count**2
+    return student(mean, float(np.sqrt(variance + rounding)), count, confidence)
 
 
 def on_cycle(cycle: Cycle, phases: Array) -> Array:
@@ -108,15 +142,27 @@ def _embedded(scene: Scene, points: Array) -> Array:
     return np.stack(columns, axis=-1)
 
 
+def _embedded_widths(scene: Scene) -> Array:
+    """Of each column that `_embedded` makes."""
+    pairs = zip(scene.width, scene.turns, strict=True)
+    return np.array([w for width, turn in pairs for w in [width] * (2 if turn > 0.0 else 1)])
+
+
+def _sampled(cycle: Cycle) -> Array:
+    return on_cycle(cycle, np.arange(PHASES) / PHASES)
+
+
 def _tree(scene: Scene, cycle: Cycle) -> tuple[KDTree, Array]:
     """The cycle's points for looking up the nearest, each axis in the cycle's own size."""
-    points = _embedded(scene, on_cycle(cycle, np.arange(PHASES) / PHASES))
+    points = _embedded(scene, _sampled(cycle))
     size = np.ptp(points, axis=0)
     scale = np.where(size > 1e-6 * np.max(size), size, np.max(size))
     return KDTree(points / scale), scale
 
 
-def _laps(scene: Scene, cycle: Cycle, stretch: Stretch, tree: KDTree, scale: Array) -> Laps:
+def _laps(
+    scene: Scene, cycle: Cycle, stretch: Stretch, tree: KDTree, scale: Array
+) -> tuple[Laps, ...]:
     _, index = tree.query(_embedded(scene, stretch.values) / scale)
     phase = np.unwrap(index / PHASES, period=1.0)
     whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1.0)
@@ -129,9 +175,7 @@ def _laps(scene: Scene, cycle: Cycle, stretch: Stretch, tree: KDTree, scale: Arr
         ]
     ).reshape(wanted.shape)
     good = _is_lap(stretch, phase, passages[0], cycle.period)
-    first, last = _longest_run(good)
-    first += _unsettled(stretch, passages[0, first : last + 1])
-    return Laps(stretch, passages[0, first : last + 1], passages[:, first : last + 1])
+    return settled_runs(stretch, passages, good, phases=np.empty(0), doubt=0.0)
 
 
 def _guesses(stretch: Stretch, phase: Array, wanted: Array) -> Array:
@@ -173,15 +217,10 @@ def _is_lap(stretch: Stretch, phase: Array, starts: Array, period: float) -> lis
     return good
 
 
-def _longest_run(good: list[bool]) -> tuple[int, int]:
-    """First and last start of the longest run of good laps."""
-    best = (0, 0)
-    first = 0
-    for i, each in enumerate([*good, False]):
-        if not each:
-            best = max(best, (first, i), key=lambda run: run[1] - run[0])
-            first = i + 1
-    return best
+def _runs(good: list[bool]) -> list[tuple[int, int]]:
+    """First and last start of each run of good laps."""
+    edges = np.flatnonzero(np.diff(np.array([False, *good, False], dtype=np.int64)))
+    return [(int(first), int(last)) for first, last in edges.reshape(-1, 2)]
 
 
 def _unsettled(stretch: Stretch, starts: Array) -> int:

@@ -12,7 +12,8 @@ from runtime.arrays import Array, Integers
 from runtime.program import Kind, Program
 from verifier.fidelity.shooting.noise import plain_noise
 from verifier.fidelity.shooting.study import Study
-from verifier.fidelity.stretches.needs import Needs
+from verifier.fidelity.stretches.changes import Changes
+from verifier.fidelity.stretches.needs import Needs, changes_of
 from verifier.fidelity.stretches.segments import segments_of
 from verifier.robot_topology.settings import Setting, longest_setting
 from verifier.topology.features import AxisRange, Portrait
@@ -44,7 +45,7 @@ class Scene:
     """The trace at the setting that held longest, and the spec's portrait there.
 
     noise, tolerance (m,): of the axes; tolerance is infinite where none is declared. columns: of
-    the axes in the state vector.
+    the axes in the state vector. changes: of the mode.
     """
 
     program: Program
@@ -52,6 +53,7 @@ class Scene:
     setting: Setting
     columns: tuple[int, ...]
     stretches: tuple[Stretch, ...]
+    changes: Changes
     noise: Array
     tolerance: Array
     horizon: float
@@ -89,6 +91,7 @@ def scene_of(program: Program, needs: Needs, study: Study | None) -> Scene:
         setting=setting,
         columns=needs.columns,
         stretches=_stretches(program, needs, times, setting),
+        changes=changes_of(program, needs),
         noise=_noise(needs, study),
         tolerance=np.array([declared.get(axis.name, np.inf) for axis in portrait.axes]),
         horizon=1.0 if fidelity is None else fidelity.horizon,

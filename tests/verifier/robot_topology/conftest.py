@@ -53,6 +53,8 @@ def cycle_of(mu: float) -> tuple[float, float, float]:
         events=rising,
         dense_output=True,
     )
+    assert found.t_events is not None
+    assert found.sol is not None
     first, last = found.t_events[0][-2:]
     lap = found.sol(np.linspace(first, last, 20_001))
     return float(last - first), float(np.abs(lap[0]).max()), float(np.abs(lap[1]).max())
