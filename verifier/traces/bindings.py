@@ -17,6 +17,7 @@ from verifier.traces.messages.paths import (
     parse_column,
     parse_path,
 )
+from verifier.traces.other_kind import of_other_kind, other_kind_diagnostic
 
 
 @final
@@ -58,10 +59,11 @@ def resolve(program: Program, log: LogFile) -> tuple[Bound, ...]:
 
     A control that is neither bound nor recorded by specc itself is left out.
     """
-    problems: list[Diagnostic] = []
     found: list[Bound] = []
+    strangers = of_other_kind(program, log)
+    problems = [other_kind_diagnostic(program, log, strangers)] if strangers else []
     for binding in program.bindings:
-        if binding.constant is None:
+        if binding.constant is None and binding not in strangers:
             bound = _bind(program, log, binding)
             problems.append(bound) if isinstance(bound, Diagnostic) else found.append(bound)
     for binding in _own_bindings(program):

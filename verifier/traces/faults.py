@@ -65,8 +65,14 @@ def nearest_help(word: str, candidates: Sequence[str], noun: str) -> str:
     listed = ", ".join(candidates[:MOST_LISTED]) or "none"
     more = len(candidates) - MOST_LISTED
     known = f"{noun}: {listed}" + (f" and {more} more" if more > 0 else "")
-    close = get_close_matches(word, candidates, n=1, cutoff=0.5)
+    close = _same_end(word, candidates) or get_close_matches(word, candidates, n=1, cutoff=0.5)
     return f"did you mean '{close[0]}'?\n{known}" if close else known
+
+
+def _same_end(word: str, candidates: Sequence[str]) -> list[str]:
+    """The candidates that differ in their namespace only: `/odom` and `/husky/odom`."""
+    last = word.rsplit("/", 1)[-1].lower()
+    return [known for known in candidates if last and known.rsplit("/", 1)[-1].lower() == last]
 
 
 def _path_span(source: Source, binding: Binding, part: tuple[int, int] | None) -> Span | None:
