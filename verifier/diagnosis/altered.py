@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias, final
 
 from runtime.program import Unit
+from verifier.diagnosis.candidates.slips import Slip
 from verifier.diagnosis.courses import Course
 from verifier.report.diagnosis import CandidateKind, ParameterKind
 
@@ -66,6 +67,7 @@ class Effect:
     parameter: set where it is one of the scalars that are refitted. stands_in: it
     puts measured states in place of predicted ones, so that it is compared with itself at its
     neutral values. best_of: so many like it were looked at before, which costs their logarithm.
+    slips: units that a gain may stand for.
     """
 
     kind: CandidateKind
@@ -78,6 +80,7 @@ class Effect:
     parameter: ParameterKind | None = None
     stands_in: bool = False
     best_of: int = 1
+    slips: tuple[Slip, ...] = ()
 
     @property
     def neutral(self) -> Values:

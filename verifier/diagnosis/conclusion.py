@@ -3,6 +3,7 @@
 from typing import Final
 
 from verifier.diagnosis import sentences
+from verifier.diagnosis.candidates.inputs import DELAY
 from verifier.diagnosis.naming import label_of
 from verifier.diagnosis.selection import Selection, Step, Tried
 from verifier.report.diagnosis import (
@@ -54,6 +55,7 @@ def concluded(
     said = [_opening(told, share, taken)]
     said += [each.sentence for each in taken]
     for step in selection.taken:
+        said += _in_other_words(step, candidates)
         rivals = [_name(each) for each in step.alike if each.matters]
         if rivals:
             said.append(f"{_name(step.tried[0])}: {sentences.either(rivals)}")
@@ -85,6 +87,15 @@ def _told(
 def _is_open(step: Step) -> bool:
     """Whether something else, that matters as well, explains as much."""
     return any(each.matters for each in step.alike)
+
+
+def _in_other_words(step: Step, candidates: tuple[Candidate, ...]) -> list[str]:
+    """What leaves the same trace as a delay: another delay, of what stands on the other side."""
+    if step.tried[0].effect.label.startswith(DELAY):
+        labels = {_name(each) for each in step.same if each.effect.label.startswith(DELAY)}
+        said = [each.sentence.split(";")[0] for each in candidates if each.label in labels]
+        return [sentences.in_other_words(said)] if said else []
+    return []
 
 
 def _name(tried: Tried) -> str:

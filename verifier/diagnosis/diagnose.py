@@ -94,9 +94,8 @@ def _better_reading(
     """A reading of the trace that explains more than all that was taken."""
     if report.verdict is Verdict.PASS:
         return None
-    gained = selection.plain.objective - selection.final.objective
-    found = reread(program, fidelity, trace, scene, selection.plain)
-    if found and found[0].gain > max(CLEAR, AS_GOOD * gained):
+    found = reread(program, fidelity, trace, scene, selection)
+    if found and found[0].gain > CLEAR and found[0].lead > -(1.0 - AS_GOOD) * found[0].gain:
         return found[0]
     return None
 
@@ -121,7 +120,7 @@ def _told(
     found = candidates_of(scene, selection, report.confidence)
     share = selection.share(scene) if best is None else 1.0
     if best is not None:
-        found = (reading_of(program, best), *found)
+        found = (reading_of(program, best, was_judged=bool(report.variables)), *found)
     moved = told_of(numbers)
     told, sentences = concluded(selection, share, found, moved, after, differs, report)
     if told is Told.NO_DIFFERENCE:

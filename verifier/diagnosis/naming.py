@@ -3,12 +3,12 @@
 from typing import Final
 
 from verifier.diagnosis.altered import Effect, Values
-from verifier.diagnosis.candidates.readings import ANGLES, LENGTHS
+from verifier.diagnosis.candidates.slips import slip_by
 from verifier.report.diagnosis import CandidateKind, ParameterKind
 from verifier.report.wording import listed
 
-NEAR: Final = 0.1
-"""A gain within this share of a slip's factor is that slip."""
+AWRY: Final = 0.1
+"""A gain within so much of -1 is a wrong sign."""
 SIGNED: Final = (ParameterKind.INPUT_GAIN, ParameterKind.RATE_GAIN, ParameterKind.SENSOR_SCALE)
 
 
@@ -17,9 +17,9 @@ def kind_of(effect: Effect, values: Values) -> CandidateKind:
     if effect.kind is CandidateKind.DEAD_TIME and values[0] < 0.0:
         return CandidateKind.LATE_LOG
     if effect.parameter in SIGNED:
-        if abs(values[0] + 1.0) < NEAR:
+        if abs(values[0] + 1.0) < AWRY:
             return CandidateKind.SIGN
-        if slip_of(values[0]):
+        if slip_of(effect, values):
             return CandidateKind.UNIT_SLIP
     return effect.kind
 
@@ -28,19 +28,21 @@ def label_of(effect: Effect, values: Values) -> str:
     """A short name: `late log of turn`, `sign of turn`."""
     kind, names = kind_of(effect, values), listed(list(effect.applies_to))
     if effect.label.startswith("delay of "):
-        return f"{kind} of {names}"
+        is_early = kind is CandidateKind.LATE_LOG and values[0] > 0.0
+        return f"{'early log' if is_early else kind} of {names}"
     if kind is CandidateKind.SIGN:
         return f"sign of {names}"
     if kind is CandidateKind.UNIT_SLIP:
-        return f"{slip_of(values[0])} in {names}"
+        return f"{slip_of(effect, values)} in {names}"
     return effect.label
 
 
-def slip_of(factor: float) -> str:
-    """The unit slip that this factor would mend; empty if it is none.
+def slip_of(effect: Effect, values: Values) -> str:
+    """The unit slip that this gain would mend, in words; empty if it is none.
 
-    >>> slip_of(0.0175), slip_of(1.2)
-    ('degrees for radians', '')
+    A sensor's scale is what the log has too much of: its inverse mends it.
     """
-    near = [words for words, f in (ANGLES | LENGTHS).items() if abs(factor / f - 1.0) < NEAR]
-    return near[0] if near else ""
+    is_scale = effect.parameter is ParameterKind.SENSOR_SCALE
+    factor = 1.0 / values[0] if is_scale and values[0] != 0.0 else values[0]
+    slip = slip_by(factor, effect.slips)
+    return "" if slip is None else slip.words

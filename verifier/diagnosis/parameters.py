@@ -7,6 +7,7 @@ import numpy as np
 
 from runtime.program import Binding, Kind, Program, State, Unit
 from verifier.diagnosis.altered import Altered, Effect, Number, Values
+from verifier.diagnosis.candidates.slips import Slip, slips_of
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.loosened import ONE, TIME_SCALE, gain_of, offset_of
 from verifier.fidelity.stretches.needs import Input, Needs, names_read, parts_of
@@ -16,8 +17,7 @@ NUDGE: Final = 1e-4
 """The difference for sensitivities, as a share of the number's size."""
 
 SLIPPING: Final = (ParameterKind.INPUT_GAIN, ParameterKind.RATE_GAIN)
-SLIPS: Final = tuple((each,) for each in (-1.0, np.pi / 180.0, 180.0 / np.pi, 1e-3, 1e3))
-"""Gains where a fit begins, too: a wrong sign, degrees and radians, millimetres and metres."""
+"""Gains whose fits begin at a wrong sign and at wrong units, too."""
 
 
 @final
@@ -26,7 +26,7 @@ class Parameter:
     """A scalar that can be refitted.
 
     name: of the control, constant or variable it belongs to; empty for the time scale. size: a
-    change of it that would be large.
+    change of it that would be large. slips: units that a gain may stand for.
     """
 
     kind: ParameterKind
@@ -37,6 +37,7 @@ class Parameter:
     low: float
     high: float
     origin: str
+    slips: tuple[Slip, ...] = ()
 
     @property
     def label(self) -> str:
@@ -95,9 +96,16 @@ def effect_of(parameter: Parameter) -> Effect:
         numbers=(number,),
         apply=_Move(parameter),
         origin=parameter.origin,
-        starts=SLIPS if parameter.kind in SLIPPING else (),
+        starts=_slipped(parameter) if parameter.kind in SLIPPING else (),
         parameter=parameter.kind,
+        slips=parameter.slips,
     )
+
+
+def _slipped(parameter: Parameter) -> tuple[Values, ...]:
+    """Where else the fit of a gain begins."""
+    sign = (-1.0,) if parameter.low < 0.0 else ()
+    return tuple((each,) for each in (*sign, *(s.factor for s in parameter.slips if not s.offset)))
 
 
 @final
@@ -183,19 +191,26 @@ def _read_outside_tables(program: Program) -> set[str]:
 
 
 def _of_inputs(program: Program, needs: Needs, bindings: dict[str, Binding]) -> list[Parameter]:
-    """Gain and offset of each input that was measured."""
+    """Gain and offset of each input that was measured.
+
+    Where a domain has no room for the other sign, a gain has none.
+    """
     units = {name: part.unit for name, part in parts_of(program).items()}
-    return [
-        each
-        for given in varying(program, needs)
-        for each in _pair(
+    found = []
+    for given in varying(program, needs):
+        assert given.series is not None, "an input that varies was measured"
+        binding = bindings.get(given.name)
+        gain, offset = _pair(
             (ParameterKind.INPUT_GAIN, ParameterKind.INPUT_OFFSET),
             given.name,
             units[given.name],
-            float(np.ptp(given.series.values)) if given.series is not None else 0.0,
-            bindings[given.name].origin if given.name in bindings else "",
+            float(np.ptp(given.series.values)),
+            "" if binding is None else binding.origin,
         )
-    ]
+        slips = slips_of(units[given.name] if binding is None else binding.unit)
+        lowest = 0.0 if given.low >= 0.0 or given.high <= 0.0 else -np.inf
+        found += [replace(gain, low=lowest, slips=slips), offset]
+    return found
 
 
 def varying(program: Program, needs: Needs) -> tuple[Input, ...]:
@@ -219,7 +234,9 @@ def _of_rate(program: Program, state: State) -> list[Parameter]:
     text = state.unit.text if state.unit.text != "1" else ""
     per_second = Unit(f"{text or '1'}/s", state.unit.scale)
     unit = state.unit if program.field.is_map else per_second
-    return _pair(kinds, state.name, unit, 0.1 * (state.high - state.low), program.field.origin)
+    width = 0.1 * (state.high - state.low)
+    gain, offset = _pair(kinds, state.name, unit, width, program.field.origin)
+    return [replace(gain, slips=tuple(s for s in slips_of(state.unit) if s.is_classic)), offset]
 
 
 def _time_scale(program: Program) -> Parameter:
@@ -232,8 +249,9 @@ def _of_sensor(state: State, binding: Binding | None) -> list[Parameter]:
     kinds = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
     origin = state.origin if binding is None else binding.origin
     width = 0.1 * (state.high - state.low)
-    pair = _pair(kinds, state.name, state.unit, width, origin)
-    return pair[1:] if state.kind is Kind.PERIODIC else pair
+    scale, offset = _pair(kinds, state.name, state.unit, width, origin)
+    slips = slips_of(state.unit if binding is None else binding.unit)
+    return [offset] if state.kind is Kind.PERIODIC else [replace(scale, slips=slips), offset]
 
 
 def _pair(

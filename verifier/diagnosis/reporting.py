@@ -7,12 +7,14 @@ import numpy as np
 from runtime.program import Program, Unit
 from verifier.diagnosis import sentences
 from verifier.diagnosis.candidates.inputs import origin_of
+from verifier.diagnosis.candidates.readings import Reading
 from verifier.diagnosis.fitting import intervals_of
 from verifier.diagnosis.naming import kind_of, label_of
 from verifier.diagnosis.refitting import Number
 from verifier.diagnosis.rereading import Reread
 from verifier.diagnosis.scene import Scene
 from verifier.diagnosis.selection import Selection, Step, Tried
+from verifier.fidelity.stretches.needs import parts_of
 from verifier.report.diagnosis import (
     Candidate,
     DepartureAfter,
@@ -73,7 +75,7 @@ def departures(results: tuple[VariableResult, ...], report: Report) -> tuple[Dep
 def regions(
     results: tuple[VariableResult, ...], units: dict[str, Unit]
 ) -> tuple[DifferingRegion, ...]:
-    """The parts of the region in which a variable surely still departs, the worst first."""
+    """The parts in which a variable surely still departs, each once, the worst first."""
     found = [
         (max(part.interval.low, -part.interval.high) / each.tolerance, each, part)
         for each in results
@@ -82,10 +84,11 @@ def regions(
         or max(part.interval.low, -part.interval.high) > CLEARLY * each.tolerance
     ]
     found.sort(key=lambda item: -item[0])
-    return tuple(
-        DifferingRegion(each.name, each.unit, part, sentences.where(each.name, part, units))
-        for _, each, part in found
-    )
+    told: dict[str, DifferingRegion] = {}
+    for _, each, part in found:
+        said = sentences.where(each.name, part, units)
+        told.setdefault(said, DifferingRegion(each.name, each.unit, part, said))
+    return tuple(told.values())
 
 
 def candidates_of(scene: Scene, selection: Selection, confidence: float) -> tuple[Candidate, ...]:
@@ -107,30 +110,35 @@ def candidates_of(scene: Scene, selection: Selection, confidence: float) -> tupl
     return tuple(found)
 
 
-def reading_of(program: Program, best: Reread) -> Candidate:
-    """A reading of the trace as the first candidate."""
+def reading_of(program: Program, best: Reread, *, was_judged: bool) -> Candidate:
+    """A reading of the trace as the first candidate; was_judged: before it was read so."""
     reading = best.reading
     bindings = {binding.name: binding for binding in program.bindings}
-    names = " and ".join(reading.applies_to)
-    sentence = {
-        "sign": f"{names} has the wrong sign in the log",
-        "swapped axes": f"{names} are swapped in the log",
-    }.get(str(reading.kind), f"the log has {reading.label}")
-    numbers = tuple(
-        FittedNumber("factor", Unit("1", 1.0), 1.0, factor, Interval(factor, factor))
-        for factor in reading.factors.values()
-    )
+    evidence = sentences.of_reading(reading, best.share, was_judged=was_judged)
     return Candidate(
         kind=reading.kind,
         applies_to=reading.applies_to,
         label=reading.label,
-        numbers=numbers,
+        numbers=_mending(program, reading),
         evidence=Evidence(best.scene.windows, best.share, best.gain, ()),
         is_taken=True,
         alike=(),
         origin=origin_of(bindings, reading.applies_to[0]),
-        sentence=f"{sentence}; {sentences.evidence(best.share, ())}",
+        sentence=f"{reading.words}; {evidence}",
     )
+
+
+def _mending(program: Program, reading: Reading) -> tuple[FittedNumber, ...]:
+    """The factor and the offset that each number in the log needs, where one does."""
+    factor, offset = reading.factor, reading.offset
+    unit = parts_of(program)[reading.applies_to[0]].unit
+    found = []
+    if factor != 1.0:
+        exact = Interval(factor, factor)
+        found.append(FittedNumber("factor", Unit("1", 1.0), 1.0, factor, exact))
+    if offset != 0.0:
+        found.append(FittedNumber("offset", unit, 0.0, offset, Interval(offset, offset)))
+    return tuple(found)
 
 
 def _candidate(

@@ -1,4 +1,10 @@
-"""Which way of reading the trace fits the spec best."""
+"""Which way of reading the trace fits the spec best.
+
+Readings differ in the size of what is measured, so residuals alone do not compare: a heading that
+is read in degrees for radians hardly moves, and what is left of it is small whatever is true. So
+each variable counts by what is left of it *beside what a variable that is read so and stands still
+would leave*; on a circle that is never more than chance would.
+"""
 
 from dataclasses import dataclass
 from typing import Final, final
@@ -10,7 +16,9 @@ from runtime.flow import flow_of
 from runtime.program import Fidelity, Program
 from verifier.diagnosis.candidates.readings import Reading, readings_of
 from verifier.diagnosis.fitting import Fit, correlation_time, plain_fit
-from verifier.diagnosis.scene import Scene, scene_of
+from verifier.diagnosis.scene import Observed, Scene, scene_of
+from verifier.diagnosis.selection import Selection
+from verifier.fidelity.shooting.samples import turned
 from verifier.fidelity.shooting.study import Study, study_of
 from verifier.fidelity.stretches.needs import Needs, needs_of
 from verifier.fidelity.stretches.segments import segments_of
@@ -24,7 +32,9 @@ SEED: Final = 7
 class Reread:
     """A reading with its scene. gain: of log-likelihood over the trace as it was read.
 
-    share: of the squared error beyond noise that is gone; 1 where nothing could be judged before.
+    lead: the same over the trace as it was read with all that explains it. share: of the squared
+    error beyond noise that is gone. Where nothing could be judged before, all three are against
+    variables that stand still.
     """
 
     reading: Reading
@@ -32,13 +42,21 @@ class Reread:
     study: Study
     scene: Scene
     gain: float
+    lead: float
     share: float
 
 
 def reread(
-    program: Program, fidelity: Fidelity, trace: Trace, scene: Scene | None, plain: Fit | None
+    program: Program,
+    fidelity: Fidelity,
+    trace: Trace,
+    scene: Scene | None,
+    selection: Selection | None,
 ) -> tuple[Reread, ...]:
-    """The readings that fit better than the trace as it was read, best first."""
+    """The readings that could be judged, the one that fits best first.
+
+    scene, selection: of the trace as it was read.
+    """
     found = []
     for reading in readings_of(program, needs_of(program, trace), trace):
         needs = needs_of(program, reading.trace)
@@ -47,8 +65,11 @@ def reread(
             continue
         other = scene_of(program, study)
         if other.windows:
-            gain, share = _gain(reading, other, fidelity, scene, plain)
-            found.append(Reread(reading, needs, study, other, gain, share))
+            plain, final = (None, None) if selection is None else (selection.plain, selection.final)
+            fitted = plain_fit(other)
+            gain, share = _gain(other, fitted, scene, plain)
+            lead = _gain(other, fitted, scene, final)[0]
+            found.append(Reread(reading, needs, study, other, gain, lead, share))
     return tuple(sorted(found, key=lambda each: -each.gain))
 
 
@@ -61,30 +82,37 @@ def _study(program: Program, fidelity: Fidelity, needs: Needs) -> Study | None:
 
 
 def _gain(
-    reading: Reading, other: Scene, fidelity: Fidelity, scene: Scene | None, plain: Fit | None
+    other: Scene, fitted: Fit, scene: Scene | None, before: Fit | None
 ) -> tuple[float, float]:
-    """Per sample, as if both had as many; likelihoods in the units of the log."""
-    fitted = plain_fit(other)
+    """Log-likelihood gained, and the share explained, by `fitted` over `before`.
+
+    Per sample, as if both had as many.
+    """
     counts = np.array([int(np.sum(each.used)) for each in other.observed])
     thinning = correlation_time(other, fitted.left.residual)
-    factors = np.array([abs(reading.factors.get(each.name, 1.0)) for each in other.observed])
-    after = fitted.sigma / factors
-    before = _width(other, fidelity) / factors if plain is None else plain.sigma
-    if scene is not None and not reading.factors:
-        before = before[[_place(scene, each.name) for each in other.observed]]
-    gain = float(np.sum(counts / thinning * np.log(before / after)))
-    floor = np.array([each.floor for each in other.observed]) / factors
-    beyond = np.maximum((before**2 - floor**2) / after**2, 1e-300)
-    share = float(np.sum((before**2 - after**2) / after**2) / np.sum(beyond))
+    still, after = _still(other), fitted.sigma
+    old, known = still, still
+    if scene is not None and before is not None:
+        order = [[each.name for each in scene.observed].index(o.name) for o in other.observed]
+        old, known = before.sigma[order], _still(scene)[order]
+    gain = float(np.sum(counts / thinning * (np.log(old / known) - np.log(after / still))))
+    floor = np.array([each.floor for each in other.observed]) / still
+    left, was = after / still, old / known
+    beyond = float(np.sum(np.maximum(was**2 - floor**2, 0.0) / left**2))
+    share = float(np.sum((was**2 - left**2) / left**2)) / max(beyond, 1e-300)
     return gain, min(share, 1.0)
 
 
-def _width(scene: Scene, fidelity: Fidelity) -> Array:
-    """What a fit must beat where nothing could be judged: the tolerances."""
-    return np.array(
-        [fidelity.tolerance.get(each.name, 0.1 * each.width) for each in scene.observed]
-    )
+def _still(scene: Scene) -> Array:
+    """What (D,) would be left if each variable stood still in every window."""
+    return np.array([max(_spread(each), each.floor, 1e-12) for each in scene.observed])
 
 
-def _place(scene: Scene, name: str) -> int:
-    return [each.name for each in scene.observed].index(name)
+def _spread(each: Observed) -> float:
+    """The deviation from the mean of each window; of an angle, at most that of pure chance."""
+    first = each.values[:, :1]
+    moved = np.where(each.used, turned(each.values - first, each.turn), 0.0)
+    count = np.maximum(np.sum(each.used, axis=1, keepdims=True), 1)
+    mean = np.sum(moved, axis=1, keepdims=True) / count
+    apart = np.where(each.used, turned(moved - mean, each.turn), 0.0)
+    return float(np.sqrt(np.sum(apart**2) / max(int(np.sum(each.used)), 1)))

@@ -13,6 +13,7 @@ from runtime.integrators import rk4
 from runtime.program import Kind
 from verifier.diagnosis.altered import Altered, Seen
 from verifier.diagnosis.courses import Course, means
+from verifier.diagnosis.reach import Reach, reach_of
 from verifier.diagnosis.scene import Observed, Scene
 from verifier.fidelity.shooting.samples import turned
 
@@ -44,17 +45,15 @@ def residuals(scene: Scene, settings: list[Altered], starts: Array) -> Array:
     return np.concatenate(parts)
 
 
-def paths_of(scene: Scene, settings: list[Altered], starts: Array) -> Array:
-    """The predicted states (L, W, S + 1, n)."""
-    lanes, windows = len(settings), scene.windows
-    columns, inputs = _inputs(scene, settings)
+def paths_of(scene: Scene, settings: list[Altered], reach: Reach, starts: Array) -> Array:
+    """The predicted states (L, W, S + 1, n) at the knots of `reach`."""
+    lanes, windows, steps = reach.times.shape
+    columns, inputs = _inputs(scene, settings, reach)
     n = scene.start.shape[1]
-    times = np.broadcast_to(scene.times, (lanes, *scene.times.shape))
-    steps = scene.times.shape[1]
     flat = rk4(
         scene.flow_for(settings),
         starts.reshape(lanes * windows, n),
-        np.ascontiguousarray(times.reshape(lanes * windows, steps)),
+        np.ascontiguousarray(reach.times.reshape(lanes * windows, steps)),
         inputs.reshape(lanes * windows, steps - 1, len(columns)),
         columns,
     )
@@ -62,68 +61,71 @@ def paths_of(scene: Scene, settings: list[Altered], starts: Array) -> Array:
 
 
 def _residuals(scene: Scene, settings: list[Altered], starts: Array) -> Array:
-    paths = paths_of(scene, settings, starts)
+    reach = reach_of(scene, settings)
+    paths = paths_of(scene, settings, reach, starts)
     found = []
     for each in scene.observed:
-        seen = [setting.seen[each.name] for setting in settings]
-        states = paths[..., each.column]
-        rows = [_as_seen(scene, s, x, each) for s, x in zip(seen, states, strict=True)]
+        rows = [
+            _as_seen(reach, lane, setting.seen[each.name], paths[lane, ..., each.column], each)
+            for lane, setting in enumerate(settings)
+        ]
         difference = turned(each.values - np.array(rows), each.turn)
         difference = np.where(np.isfinite(difference), difference, LOST * each.width)
         found.append(np.where(each.used, difference, 0.0))
     return np.concatenate(found, axis=2)
 
 
-def _as_seen(scene: Scene, seen: Seen, path: Array, observed: Observed) -> Array:
+def _as_seen(reach: Reach, lane: int, seen: Seen, path: Array, observed: Observed) -> Array:
     """What the sensor would tell (W, m) of the path (W, S + 1)."""
     rows = np.arange(len(path))[:, None]
     if seen.delay == 0.0:
-        plain = path[rows, observed.at]
+        plain = path[rows, observed.at + reach.front]
     else:
-        plain = _between(scene.times, path, observed.times - seen.delay)
+        plain = _between(reach.times[lane], path, observed.times - seen.delay)
     return np.asarray(seen.scale * plain + seen.offset)
 
 
 def _between(times: Array, path: Array, at: Array) -> Array:
     """The path at other times (W, m): linear between knots, and beyond the first and last step."""
-    last = np.sum(np.diff(times, axis=1) > 0.0, axis=1)
-    right = np.sum(times[:, None, :] <= at[:, :, None], axis=2)
-    right = np.clip(right, 1, last[:, None])
+    inner = np.diff(times, axis=1) > 0.0
+    steps = times.shape[1] - 1
+    first = np.argmax(inner, axis=1)[:, None]
+    last = steps - 1 - np.argmax(inner[:, ::-1], axis=1)[:, None]
+    # The last of equal knots comes before, so that no step between is empty inside.
+    left = np.sum(times[:, None, :] <= at[:, :, None], axis=2) - 1
+    left = np.clip(left, first, last)
     rows = np.arange(len(path))[:, None]
-    low, high = times[rows, right - 1], times[rows, right]
-    share = (at - low) / (high - low)
-    return np.asarray(path[rows, right - 1] * (1.0 - share) + path[rows, right] * share)
+    low, high = times[rows, left], times[rows, left + 1]
+    share = (at - low) / np.where(high > low, high - low, 1.0)
+    return np.asarray(path[rows, left] * (1.0 - share) + path[rows, left + 1] * share)
 
 
-def _inputs(scene: Scene, settings: list[Altered]) -> tuple[Integers, Array]:
+def _inputs(scene: Scene, settings: list[Altered], reach: Reach) -> tuple[Integers, Array]:
     """The register's columns that are told from outside, and their values (L, W, S, K)."""
     register = scene.flow.program.register
     names = list(dict.fromkeys(name for s in settings for name in (*s.courses, *s.register)))
     columns = np.array([register.index(name) for name in names], dtype=np.int64)
-    steps = scene.times.shape[1] - 1
-    values = np.empty((len(settings), scene.windows, steps, len(names)))
+    lanes, windows, steps = reach.times.shape
+    values = np.empty((lanes, windows, steps - 1, len(names)))
     discrete = {s.name for s in scene.program.states if s.kind is Kind.DISCRETE}
-    known: dict[tuple[str, int], Array] = {}
-    for i, setting in enumerate(settings):
+    known: dict[tuple[str, int, bytes], Array] = {}
+    for i, (setting, times) in enumerate(zip(settings, reach.times, strict=True)):
+        ends = times[:, [0, -1]].tobytes()
         for k, name in enumerate(names):
             course = setting.courses.get(name)
             if course is None:
                 default = float(scene.flow.defaults[columns[k]])
                 values[i, :, :, k] = setting.register.get(name, default)
                 continue
-            key = (name, id(course))
+            key = (name, id(course), ends)
             if key not in known:
-                known[key] = _held(course, scene) if name in discrete else _means(course, scene)
+                known[key] = _held(course, times) if name in discrete else means(course, times)
             values[i, :, :, k] = known[key]
     low, high = scene.flow.domain[:, columns]
     return columns, np.clip(values, low, high)
 
 
-def _means(course: Course, scene: Scene) -> Array:
-    return means(course, scene.times)
-
-
-def _held(course: Course, scene: Scene) -> Array:
+def _held(course: Course, times: Array) -> Array:
     """A discrete input has no mean: what it is at the beginning of each step."""
-    at = np.searchsorted(course.times, scene.times[:, :-1] + 1e-9, side="right") - 1
+    at = np.searchsorted(course.times, times[:, :-1] + 1e-9, side="right") - 1
     return np.asarray(course.values[np.clip(at, 0, None)])

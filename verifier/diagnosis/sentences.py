@@ -6,6 +6,7 @@ import numpy as np
 
 from runtime.program import Unit
 from verifier.diagnosis.altered import Effect, Values
+from verifier.diagnosis.candidates.readings import Reading
 from verifier.diagnosis.naming import kind_of, slip_of
 from verifier.diagnosis.parameters import Parameter
 from verifier.report.diagnosis import CandidateKind, DepartureAfter, FittedNumber
@@ -59,13 +60,15 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
     ]
     subject = effect.label.partition(" of ")[2] or names
     size = found[0] if found else ""
+    side = "early" if values and values[0] > 0.0 else "late"
+    verb = "act" if len(effect.applies_to) > 1 else "acts"
     if kind is CandidateKind.REGION:
         return _in_a_region(effect, numbers, size)
     said = {
-        CandidateKind.DEAD_TIME: f"{subject} acts {size} later than the spec says",
-        CandidateKind.LATE_LOG: f"the log tells {names} {size} late",
-        CandidateKind.CLOCK_OFFSET: f"the stamps of {subject} are {size} "
-        f"{'early' if values and values[0] > 0.0 else 'late'} beside those of the other topics",
+        CandidateKind.DEAD_TIME: f"{subject} {verb} {size} later than the spec says",
+        CandidateKind.LATE_LOG: f"the log tells {names} {size} {side}",
+        CandidateKind.CLOCK_OFFSET: f"the stamps of {subject} are {size} {side} beside those of the"
+        " other topics",
         CandidateKind.LAG: f"{subject} acts through a first-order lag of {size}",
         CandidateKind.SATURATION: f"{subject} saturates at {size}",
         CandidateKind.DEAD_ZONE: f"{subject} has a dead zone of {size} to either side",
@@ -73,7 +76,7 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
         CandidateKind.SWAPPED_AXES: f"{names} are swapped",
     }
     if kind is CandidateKind.UNIT_SLIP:
-        return f"{names} looks like {slip_of(values[0])}"
+        return f"{names} looks like {slip_of(effect, values)}"
     return said[kind] if kind in said else of_scalar(effect, numbers[0])
 
 
@@ -96,6 +99,21 @@ def evidence(share: float, before: tuple[str, ...]) -> str:
     """How much it explains of what was left."""
     what = "what is left of the error" if before else "the error beyond noise"
     return f"it explains {percent(max(share, 0.0))} of {what} in windows that it was not fitted to"
+
+
+def in_other_words(said: list[str]) -> str:
+    """Explanations that leave the very same trace."""
+    return f"in other words, which leave the same trace: {', or '.join(said)}"
+
+
+def of_reading(reading: Reading, share: float, *, was_judged: bool) -> str:
+    """What speaks for another reading of the log."""
+    if was_judged:
+        return evidence(share, ())
+    names = listed(list(reading.applies_to))
+    lies = "lies within its domain" if len(reading.applies_to) == 1 else "lie within their domains"
+    said = f"read so, {names} {lies}"
+    return f"{said}, and the spec explains {percent(max(share, 0.0))} of how the robot moves"
 
 
 def partly(share: float) -> str:
@@ -135,4 +153,8 @@ def where(name: str, region: RegionMean, units: dict[str, Unit]) -> str:
     """`heading differs from 0.2 to 0.4 rad of heading`."""
     parts = [f"{key} is {value}" for key, value in region.values.items()]
     parts += [f"{key} {span(*ends, units[key])}" for key, ends in region.bounds.items()]
+    if region.moved is not None:
+        parts.append(f"it moves by about {quantity(region.moved, units[name])}")
+    if region.hurried is not None:
+        parts.append(f"what drives it is {'rising' if region.hurried > 0.0 else 'falling'}")
     return f"{name} still differs where {listed(parts)}" if parts else f"{name} still differs"

@@ -1,30 +1,55 @@
-"""Topics whose clock is off: all their series are late or early together."""
+"""Stamps that are off: of a topic, of one driven state, or of all states against all inputs."""
+
+from typing import TypeAlias
 
 from verifier.diagnosis.altered import Effect
-from verifier.diagnosis.candidates.inputs import delay_of, origin_of
+from verifier.diagnosis.candidates.inputs import DELAY, delay_of, origin_of
 from verifier.diagnosis.parameters import varying
 from verifier.diagnosis.scene import Scene
+from verifier.report.wording import listed
+
+Group: TypeAlias = tuple[tuple[str, ...], tuple[str, ...]]
+"""Inputs and states that are late together."""
 
 
 def effects_on_clocks(scene: Scene) -> tuple[Effect, ...]:
-    """Of topics that hold several series, but not all; one of a single input is the input's own.
+    """Of topics, of all inputs, of all states, and of each state.
 
-    A topic that holds all driven states is left alone: its clock is off against the inputs just
-    as theirs is against it.
+    All states that are late together leave the same trace as all inputs that act late together:
+    both are tried, so that each is told beside the other.
     """
-    inputs = [each.name for each in varying(scene.program, scene.needs)]
-    states = [each.name for each in scene.observed]
+    inputs = tuple(each.name for each in varying(scene.program, scene.needs))
+    states = tuple(each.name for each in scene.observed)
     bindings = {binding.name: binding for binding in scene.program.bindings}
     paths = {name: bindings[name].path for name in (*inputs, *states) if name in bindings}
-    effects = []
+    labels = _topics(inputs, states, paths)
+    groups: list[Group] = [(inputs, ())] if len(inputs) > 1 else []
+    if not scene.program.field.is_map:
+        groups += [((), states), *(((), (name,)) for name in states)]
+    for group in groups:
+        labels.setdefault(group, f"{DELAY}{listed([*group[0], *group[1]])}")
+    return tuple(
+        delay_of(mine, seen, label, scene.horizon, origin_of(bindings, (*mine, *seen)[0]))
+        for (mine, seen), label in labels.items()
+    )
+
+
+def _topics(
+    inputs: tuple[str, ...], states: tuple[str, ...], paths: dict[str, str]
+) -> dict[Group, str]:
+    """Topics that hold several series, but not all, with their labels.
+
+    One of a single input is the input's own. A topic that holds all states is left alone: its
+    clock is off against the inputs just as theirs is against it.
+    """
+    found = {}
     for topic in dict.fromkeys(topic_of(path) for path in paths.values()):
         own = [name for name in paths if topic_of(paths[name]) == topic]
         mine = tuple(name for name in inputs if name in own)
         seen = tuple(name for name in states if name in own)
         if topic and len(seen) < len(states) and (seen or len(mine) > 1):
-            origin = origin_of(bindings, own[0])
-            effects.append(delay_of(mine, seen, f"clock of {topic}", scene.horizon, origin))
-    return tuple(effects)
+            found[mine, seen] = f"clock of {topic}"
+    return found
 
 
 def topic_of(path: str) -> str:

@@ -16,6 +16,8 @@ from verifier.report.diagnosis import CandidateKind
 SECOND: Final = Unit("s", 1.0)
 SHIFTS: Final = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Where fits of a delay begin, to either side, in horizons."""
+DELAY: Final = "delay of "
+"""How the label of a delay begins that is not that of a topic's clock."""
 LAGS: Final = (0.02, 0.1, 0.3)
 LIMITS: Final = (0.9, 0.75, 0.6, 0.4)
 """Where fits of a limit begin, in largest values seen."""
@@ -32,7 +34,7 @@ def effects_on_inputs(scene: Scene) -> tuple[Effect, ...]:
     for each in moving:
         origin = origin_of(bindings, each.name)
         effects += [
-            delay_of((each.name,), (), f"delay of {each.name}", scene.horizon, origin),
+            delay_of((each.name,), (), f"{DELAY}{each.name}", scene.horizon, origin),
             _lag(each.name, scene.horizon, origin),
             *_sizes(each, parts[each.name].unit, origin),
         ]
@@ -48,9 +50,13 @@ def effects_on_inputs(scene: Scene) -> tuple[Effect, ...]:
 def delay_of(
     inputs: tuple[str, ...], states: tuple[str, ...], label: str, horizon: float, origin: str
 ) -> Effect:
-    """Inputs that act so many seconds later than logged; states seen so many seconds earlier."""
-    is_one = len(inputs) == 1 and not states
-    kind = CandidateKind.DEAD_TIME if is_one else CandidateKind.CLOCK_OFFSET
+    """Inputs that act so many seconds later than logged; states seen so many seconds earlier.
+
+    Of inputs alone it is a dead time, or they are logged late; of states alone a late log.
+    """
+    kind = CandidateKind.CLOCK_OFFSET
+    if label.startswith(DELAY):
+        kind = CandidateKind.LATE_LOG if states else CandidateKind.DEAD_TIME
     number = Number("delay", SECOND, 0.0, 1e-3 * horizon, -horizon, horizon)
     starts = tuple((sign * share * horizon,) for share in SHIFTS for sign in (1.0, -1.0))
     apply = _Shift(inputs, states)
