@@ -34,7 +34,8 @@ def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
     beyond = tuple(each for each in found if isinstance(each, str))
     if diagnosis.told is Told.STRUCTURE_DIFFERS and not found:
         beyond = diagnosis.sentences[:2]
-    return Aims(aims, beyond, _left(diagnosis) if aims else (), _choices(diagnosis))
+    choices = (*_choices(diagnosis), *(_either(*each) for each in _late_instead(diagnosis)))
+    return Aims(aims, beyond, _left(diagnosis) if aims else (), choices)
 
 
 def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
@@ -43,7 +44,8 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
     of_rates = {each.name for each in moved if each.kind is ParameterKind.RATE_GAIN}
     found: list[AnyAim | str] = []
     by_hand: set[str] = set()
-    taken = [each for each in diagnosis.candidates if each.is_taken]
+    instead = dict(_late_instead(diagnosis))
+    taken = [instead.get(each, each) for each in diagnosis.candidates if each.is_taken]
     found += delays([each for each in taken if each.kind in LATE], bindings)
     for each in taken:
         if each.kind in OF_LOGS and not of_rates & set(each.applies_to):
@@ -62,6 +64,23 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
         if number.kind not in OF_INPUTS + OF_SENSORS:
             found.append(_own(number, program))
     return found
+
+
+def _late_instead(diagnosis: Diagnosis) -> list[tuple[Candidate, Candidate]]:
+    """Dead times, which no number of the spec is, with the late logs that leave the same trace."""
+    by_label = {each.label: each for each in diagnosis.candidates if each.kind in LATE}
+    return [
+        (each, by_label[label])
+        for each in diagnosis.candidates
+        if each.is_taken and each.kind is CandidateKind.DEAD_TIME
+        for label in each.alike[:1]
+        if label in by_label
+    ]
+
+
+def _either(dead: Candidate, late: Candidate) -> str:
+    said = (each.sentence.split(";")[0] for each in (dead, late))
+    return f"{', or '.join(said)}: these leave the same trace (--anyway writes the latter)"
 
 
 def _in_order(diagnosis: Diagnosis) -> list[Refitted]:
