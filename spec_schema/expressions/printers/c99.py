@@ -3,7 +3,15 @@
 from dataclasses import dataclass
 from typing import final
 
-from spec_schema.expressions.printers.piece import SIGN, SUM, TERM, Piece, call, joined
+from spec_schema.expressions.printers.piece import (
+    ARITHMETIC,
+    SIGN,
+    SUM,
+    Piece,
+    call,
+    joined,
+    literal,
+)
 from spec_schema.expressions.tree import COMPARISONS, Apply, Expr, Name, Number, fold
 
 C99_FUNCTIONS = """\
@@ -43,13 +51,6 @@ FUNCTIONS: dict[str, str] = {
 
 POWERS: dict[float, str] = {2.0: "specc_square", 3.0: "specc_cube", 4.0: "specc_fourth"}
 
-GROUPED: dict[str, tuple[str, int]] = {
-    "add": (" + ", SUM),
-    "sub": (" - ", SUM),
-    "mul": (" * ", TERM),
-    "div": (" / ", TERM),
-}
-
 
 @final
 @dataclass(frozen=True, slots=True)
@@ -78,7 +79,7 @@ def to_c99(expr: Expr) -> str:
 def _part(node: Expr, operands: tuple[_Part, ...]) -> _Part:
     match node:
         case Number(value=value):
-            return _Part(Piece(repr(value), SIGN) if value < 0 else Piece(repr(value)))
+            return _Part(literal(value))
         case Name(name=name):
             return _Part(Piece(name))
         case Apply(op="where"):
@@ -103,8 +104,8 @@ def _condition(op: str, operands: tuple[_Part, ...]) -> str:
 
 
 def _operation(op: str, operands: tuple[Piece, ...]) -> Piece:
-    if op in GROUPED:
-        return joined(*GROUPED[op], operands[0], operands[1])
+    if op in ARITHMETIC:
+        return joined(*ARITHMETIC[op], operands[0], operands[1])
     if op == "neg":
         return Piece(f"-{operands[0].inside(SIGN + 1)}", SIGN)
     return call(FUNCTIONS.get(op, op), operands)

@@ -6,6 +6,14 @@ from typing import final
 OR, AND, NOT, COMPARISON, SUM, TERM, SIGN, POWER, ATOM = range(1, 10)
 """How tightly an operator binds; what binds less needs brackets inside what binds more."""
 
+ARITHMETIC: dict[str, tuple[str, int]] = {
+    "add": (" + ", SUM),
+    "sub": (" - ", SUM),
+    "mul": (" * ", TERM),
+    "div": (" / ", TERM),
+}
+"""As C and Python write it, and how tightly it binds."""
+
 
 @final
 @dataclass(frozen=True, slots=True)
@@ -18,6 +26,11 @@ class Piece:
     def inside(self, least: int) -> str:
         """The text, in brackets where it binds less tightly than `least`."""
         return self.text if self.level >= least else f"({self.text})"
+
+
+def literal(value: float) -> Piece:
+    """A number, exact to the last bit."""
+    return Piece(repr(value), SIGN) if value < 0 else Piece(repr(value))
 
 
 def joined(symbol: str, level: int, left: Piece, right: Piece) -> Piece:

@@ -4,7 +4,17 @@ from dataclasses import dataclass
 from typing import final
 
 from spec_schema.expressions.printers.numerals import numeral
-from spec_schema.expressions.printers.piece import POWER, SIGN, SUM, TERM, Piece, call, joined
+from spec_schema.expressions.printers.piece import (
+    ARITHMETIC,
+    POWER,
+    SIGN,
+    SUM,
+    TERM,
+    Piece,
+    call,
+    joined,
+    literal,
+)
 from spec_schema.expressions.tree import COMPARISONS, Apply, Expr, Name, Number, fold
 
 FUNCTIONS: dict[str, str] = {
@@ -29,13 +39,6 @@ FUNCTIONS: dict[str, str] = {
     "tanh": "np.tanh",
     "floor": "np.floor",
     "pow": "np.power",
-}
-
-GROUPED: dict[str, tuple[str, int]] = {
-    "add": (" + ", SUM),
-    "sub": (" - ", SUM),
-    "mul": (" * ", TERM),
-    "div": (" / ", TERM),
 }
 
 GREATEST_POWER = 64
@@ -71,7 +74,7 @@ def to_python(expr: Expr) -> str:
 def _part(node: Expr, operands: tuple[_Part, ...]) -> _Part:
     match node:
         case Number(value=value):
-            return _Part(Piece(repr(value), SIGN) if value < 0 else Piece(repr(value)))
+            return _Part(literal(value))
         case Name(name=name):
             return _Part(Piece(name))
         case Apply(op="where"):
@@ -102,8 +105,8 @@ def _condition(op: str, operands: tuple[_Part, ...]) -> str:
 
 
 def _operation(op: str, operands: tuple[Piece, ...]) -> Piece:
-    if op in GROUPED:
-        return joined(*GROUPED[op], operands[0], operands[1])
+    if op in ARITHMETIC:
+        return joined(*ARITHMETIC[op], operands[0], operands[1])
     if op == "neg":
         return Piece(f"-{operands[0].inside(SIGN + 1)}", SIGN)
     if op == "clip":
