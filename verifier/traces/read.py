@@ -41,8 +41,8 @@ def read_trace(
     be judged.
     """
     log = open_log(path, wanted_by(program), progress)
-    if isinstance(log, MessageLog) and not log.streams:
-        raise file_fault(path, "V306", "no message can be read", _damage(log.losses))
+    if isinstance(log, MessageLog) and not any(stream.count for stream in log.streams):
+        raise _nothing(path, log.losses)
     bound = resolve(program, log)
     topics = _sample(program, log, bound)
     if clock == "sensor":
@@ -250,6 +250,15 @@ def _topic_losses(
     topic: str, topics: Mapping[str, Samples], runs: Mapping[str, _Run]
 ) -> tuple[Loss, ...]:
     return (*topics[topic].losses, *runs[topic].ordering.losses) if topic in topics else ()
+
+
+def _nothing(path: Path, losses: Sequence[Loss]) -> SpecError:
+    """A log without a message is at fault itself, whatever the spec wants of it."""
+    if not losses:
+        return file_fault(path, "V306", "the log holds no message")
+    first = losses[0]
+    message = f"no message of this log can be read: {first.cause}, {first.detail}"
+    return file_fault(path, "V306", message, f"what was lost:\n{_damage(losses)}")
 
 
 def _damage(losses: Sequence[Loss]) -> str:

@@ -34,6 +34,10 @@ def logs(workshop: Any, make: Any) -> Path:
     notes += [make.note("/proto", 5.0, b"\x08\x01", "flatbuffer", "made.Y", "flatbuffer")]
     notes += [make.note("/custom", 5.0, bytes(12), "cdr")]
     workshop.mcap(notes, "drive.mcap", silent=("/silent",))
+    whole = workshop.mcap(notes[:20], "corrupt.mcap", chunk_size=1 << 20)
+    # Its only chunk holds all messages; the index behind it still knows the topic.
+    workshop.text(whole.read_bytes().replace(b"base", b"esab"), "corrupt.mcap")
+    workshop.mcap([], "silent.mcap", silent=("/odom",))
     workshop.text("", "empty.mcap")
     workshop.text(b"\x89PNG\r\n\x1a\n" + bytes(50), "picture.png")
     workshop.text(CSV, "drive.csv")
