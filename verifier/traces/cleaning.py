@@ -19,18 +19,21 @@ GAP_PERIODS = 5
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Ordering:
-    """rows: which samples to take, in this order; their times increase strictly."""
+    """rows: which samples to take, in this order; their times increase strictly.
 
-    rows: Integers
+    None where these are all of them as they stand, as in most logs, of which some are long.
+    """
+
+    rows: Integers | None
     losses: tuple[Loss, ...]
     notes: tuple[str, ...]
 
 
 def order(topic: str, times: Integers, usable: Booleans) -> Ordering:
     """The order of samples by their times (T,) in nanoseconds, of those that are `usable`."""
+    if usable.all() and (times[1:] > times[:-1]).all():
+        return Ordering(None, (), tuple(gap_notes(topic, times)))
     rows = np.flatnonzero(usable)
-    if rows.size == times.size and (times[1:] > times[:-1]).all():
-        return Ordering(rows, (), tuple(gap_notes(topic, times)))
     losses, notes = [], []
     if unusable := times.size - rows.size:
         losses.append(Loss("samples without a stamp", unusable, topic))
@@ -55,13 +58,15 @@ def gap_notes(topic: str, times: Integers) -> list[str]:
     steps = np.diff(times)
     if steps.size < 2:
         return []
-    long = steps > max(GAP_PERIODS * float(np.median(steps)), LEAST_GAP)
-    if not long.any():
-        return []
     widest = int(np.argmax(steps))
-    after = float(times[widest] - times[0]) / 1e9
-    gaps = "1 gap" if np.count_nonzero(long) == 1 else f"{np.count_nonzero(long)} gaps"
-    return [f"{topic}: {gaps}, the largest {steps[widest] / 1e9:.3g} s after {after:.4g} s"]
+    largest, after = steps[widest] / 1e9, float(times[widest] - times[0]) / 1e9
+    # From here on the steps stand in no order.
+    period = float(np.median(steps, overwrite_input=True))
+    count = np.count_nonzero(steps > max(GAP_PERIODS * period, LEAST_GAP))
+    if not count:
+        return []
+    gaps = "1 gap" if count == 1 else f"{count} gaps"
+    return [f"{topic}: {gaps}, the largest {largest:.3g} s after {after:.4g} s"]
 
 
 def longest_run(times: Integers) -> Integers:

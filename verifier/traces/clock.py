@@ -67,20 +67,16 @@ def choose_clocks(topics: Sequence[Samples], wish: str) -> Clocks:
 
 def stamp_fault(samples: Samples) -> str:
     """Why the topic's stamps can't be its times; empty where they can."""
-    stamps = samples.stamps
-    if stamps is None:
+    if samples.stamps is None:
         return "no sensor stamps"
-    given = stamps > 0
-    if np.count_nonzero(given) < 0.5 * given.size or not given.size:
+    stamps, logs = _given(samples.stamps, samples.log_times)
+    if stamps.size < 0.5 * samples.stamps.size or not stamps.size:
         return "most sensor stamps are zero"
-    logs = samples.log_times
-    if not given.all():
-        stamps, logs = stamps[given], logs[given]
-    steps = np.diff(stamps)
-    if steps.size and np.count_nonzero(steps > 0) < 0.8 * steps.size:
+    steps = stamps.size - 1
+    if steps and np.count_nonzero(stamps[1:] > stamps[:-1]) < 0.8 * steps:
         return "sensor stamps stand still or run backwards"
     span, logged = _span(stamps), _span(logs)
-    if logged > 0 and steps.size > 10 and not 0.8 < span / logged < 1.25:
+    if logged > 0 and steps > 10 and not 0.8 < span / logged < 1.25:
         return f"sensor stamps span {span:.3g} s, log times {logged:.3g} s"
     return ""
 
@@ -88,11 +84,16 @@ def stamp_fault(samples: Samples) -> str:
 def offset(samples: Samples) -> Offset:
     """How much later than its stamp a message of this topic was logged."""
     assert samples.stamps is not None, "only topics with stamps have an offset"
-    given = samples.stamps > 0
-    logged, stamped = _thinned(samples.log_times[given]), _thinned(samples.stamps[given])
-    late = (logged - stamped).astype(np.float64) / 1e9
+    stamps, logs = _given(samples.stamps, samples.log_times)
+    late = (_thinned(logs) - _thinned(stamps)).astype(np.float64) / 1e9
     low, median, high = np.percentile(late, (5.0, 50.0, 95.0))
     return Offset(float(median), float(high - low) / 2.0)
+
+
+def _given(stamps: Integers, logs: Integers) -> tuple[Integers, Integers]:
+    """The stamps that are there, and the log times beside them; no copies where all are."""
+    given = stamps > 0
+    return (stamps, logs) if given.all() else (stamps[given], logs[given])
 
 
 def _span(times: Integers) -> float:

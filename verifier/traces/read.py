@@ -16,11 +16,14 @@ from verifier.traces.clock import Clock, choose_clocks, stamp_fault
 from verifier.traces.faults import binding_diagnostic, file_diagnostic, file_fault
 from verifier.traces.files.log import LogFile, MessageLog, Progress, Sheet
 from verifier.traces.files.open_log import open_log
+from verifier.traces.messages.columns import Column
 from verifier.traces.messages.fields import FieldError
 from verifier.traces.messages.paths import MessagePath
 from verifier.traces.samples import Samples, check_topic, sample_sheet, sample_topic
 from verifier.traces.trace import Loss, Series, Trace
 from verifier.traces.values import Meaning, Measured, NotNumbersError, measured
+
+_BLOCK = 1 << 16
 
 ClockWish: TypeAlias = Literal["auto", "sensor", "log"]
 
@@ -40,19 +43,10 @@ def read_trace(
     strict: any loss is an error. Raises SpecError V301 to V313, all at once, where nothing can
     be judged.
     """
-    log = open_log(path, wanted_by(program), progress)
-    if isinstance(log, MessageLog) and not any(stream.count for stream in log.streams):
-        raise _nothing(path, log.losses)
-    bound = resolve(program, log)
-    topics = _sample(program, log, bound)
-    if clock == "sensor":
-        _require_stamps(path, topics)
-    # The time column of a sheet is all there is, and already noted.
-    clocks = choose_clocks(tuple(topics.values()), "log" if isinstance(log, Sheet) else clock)
-    runs = {name: _run(samples, clocks.of[name]) for name, samples in topics.items()}
-    readings = _readings(program, bound, topics, runs, log.losses)
+    bare = _read_bare(path, program, clock, progress)
+    readings = _readings(program, bare)
     start = min((int(reading.times[0]) for reading in readings), default=0)
-    losses = _losses(log, topics, runs, readings)
+    losses = _losses(bare, readings)
     if strict and losses:
         raise file_fault(
             path, "V313", "the log is not whole, as --strict wants it", _damage(losses)
@@ -63,18 +57,38 @@ def read_trace(
         constants={b.name: b.constant for b in program.bindings if b.constant is not None},
         start=start / 1e9,
         losses=losses,
-        notes=_notes(log, topics, runs, readings, clocks.notes),
+        notes=_notes(bare, readings),
     )
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Run:
-    """The usable samples of a topic in order: rows (k,) of it, times (k,) in nanoseconds."""
+    """The usable samples of a topic in order, at `times` (k,) in nanoseconds of one clock.
 
+    columns: of all samples; `ordering` says which of them are usable.
+    """
+
+    topic: str
     clock: Clock
     times: Integers
     ordering: Ordering
+    columns: Mapping[str, Column]
+    losses: tuple[Loss, ...]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Bare:
+    """What the log holds for the program, in its own units: a run of each topic.
+
+    Of a long log the times on the other clock are not kept any longer than this takes to make.
+    """
+
+    bound: tuple[Bound, ...]
+    runs: Mapping[str, _Run]
+    losses: tuple[Loss, ...]
+    notes: tuple[str, ...]
 
 
 @final
@@ -88,6 +102,21 @@ class _Reading:
     values: Array
     losses: tuple[Loss, ...]
     notes: tuple[str, ...]
+
+
+def _read_bare(path: Path, program: Program, clock: ClockWish, progress: Progress | None) -> _Bare:
+    """The log, read and put in order; raises SpecError."""
+    log = open_log(path, wanted_by(program), progress)
+    if isinstance(log, MessageLog) and not any(stream.count for stream in log.streams):
+        raise _nothing(path, log.losses)
+    bound = resolve(program, log)
+    topics = _sample(program, log, bound)
+    if clock == "sensor":
+        _require_stamps(path, topics)
+    # The time column of a sheet is all there is, and already noted.
+    clocks = choose_clocks(tuple(topics.values()), "log" if isinstance(log, Sheet) else clock)
+    runs = {name: _run(samples, clocks.of[name]) for name, samples in topics.items()}
+    return _Bare(bound, runs, log.losses, (*log.notes, *clocks.notes))
 
 
 def _sample(program: Program, log: LogFile, bound: Sequence[Bound]) -> dict[str, Samples]:
@@ -141,33 +170,34 @@ def _run(samples: Samples, clock: Clock) -> _Run:
         times = samples.stamps
         usable = times > 0
     ordering = order(samples.topic, times, usable)
-    whole = ordering.rows.size == times.size and (ordering.rows[1:] > ordering.rows[:-1]).all()
-    return _Run(clock, times if whole else times[ordering.rows], ordering)
+    return _Run(
+        topic=samples.topic,
+        clock=clock,
+        times=times if ordering.rows is None else times[ordering.rows],
+        ordering=ordering,
+        columns=samples.columns,
+        losses=(*samples.losses, *ordering.losses),
+    )
 
 
-def _readings(
-    program: Program,
-    bound: Sequence[Bound],
-    topics: Mapping[str, Samples],
-    runs: Mapping[str, _Run],
-    losses: Sequence[Loss],
-) -> list[_Reading]:
+def _readings(program: Program, bare: _Bare) -> list[_Reading]:
     readings: list[_Reading] = []
     problems: list[Diagnostic] = []
-    for one in bound:
+    for one in bare.bound:
+        run = bare.runs.get(one.topic)
         try:
-            reading = _reading(program, one, topics, runs)
+            reading = _reading(program, one, run) if run else None
         except NotNumbersError as error:
             problems.append(
                 binding_diagnostic(program, one.binding, "V305", error.message, help=error.help)
             )
             continue
-        if reading is None:
+        if run is None or reading is None:
             message = f"the topic {one.topic} has no messages"
-            lost = _damage(losses)
+            lost = _damage(bare.losses)
         elif not reading.times.size:
             message = f"no usable sample stands at {one.binding.path}"
-            lost = _damage([*losses, *_topic_losses(one.topic, topics, runs), *reading.losses])
+            lost = _damage([*bare.losses, *run.losses, *reading.losses])
         else:
             readings.append(reading)
             continue
@@ -177,15 +207,10 @@ def _readings(
     return readings
 
 
-def _reading(
-    program: Program, bound: Bound, topics: Mapping[str, Samples], runs: Mapping[str, _Run]
-) -> _Reading | None:
-    """The variable's samples; None where its topic has none."""
-    if bound.topic not in topics:
-        return None
-    run = runs[bound.topic]
+def _reading(program: Program, bound: Bound, run: _Run) -> _Reading:
+    """The variable's samples."""
     state = next((s for s in program.states if s.name == bound.binding.name), None)
-    found = _measured(program, bound, state, topics[bound.topic], run)
+    found = _measured(program, bound, state, run)
     finite: Booleans = np.isfinite(found.values)
     whole = bool(finite.all())
     values = found.values if whole else found.values[finite]
@@ -198,16 +223,15 @@ def _reading(
     return _Reading(bound, run.clock, times, values, found.losses, found.notes)
 
 
-def _measured(
-    program: Program, bound: Bound, state: State | None, samples: Samples, run: _Run
-) -> Measured:
+def _measured(program: Program, bound: Bound, state: State | None, run: _Run) -> Measured:
     binding = bound.binding
     meaning = Meaning(
         texts=dict(binding.values or texts_of(state.values if state else ())),
         is_signal=binding.name not in program.register,
         derived=bound.derived,
     )
-    return measured(binding, meaning, samples.columns[bound.column].rows(run.ordering.rows))
+    column, rows = run.columns[bound.column], run.ordering.rows
+    return measured(binding, meaning, column if rows is None else column.rows(rows))
 
 
 def _all_series(readings: Sequence[_Reading], start: int) -> dict[str, Series]:
@@ -229,27 +253,18 @@ def _all_series(readings: Sequence[_Reading], start: int) -> dict[str, Series]:
 
 def _seconds(times: Integers, start: int) -> Array:
     """Seconds since `start`, in an array that nobody can write to."""
-    seconds = (times - start).astype(np.float64)
-    seconds /= 1e9
+    seconds = np.empty(times.size)
+    for first in range(0, times.size, _BLOCK):
+        block = slice(first, first + _BLOCK)
+        seconds[block] = (times[block] - start) / 1e9
     seconds.setflags(write=False)
     return seconds
 
 
-def _losses(
-    log: LogFile,
-    topics: Mapping[str, Samples],
-    runs: Mapping[str, _Run],
-    readings: Sequence[_Reading],
-) -> tuple[Loss, ...]:
-    by_topic = (loss for topic in topics for loss in _topic_losses(topic, topics, runs))
+def _losses(bare: _Bare, readings: Sequence[_Reading]) -> tuple[Loss, ...]:
+    by_topic = (loss for run in bare.runs.values() for loss in run.losses)
     by_variable = (loss for reading in readings for loss in reading.losses)
-    return (*log.losses, *by_topic, *by_variable)
-
-
-def _topic_losses(
-    topic: str, topics: Mapping[str, Samples], runs: Mapping[str, _Run]
-) -> tuple[Loss, ...]:
-    return (*topics[topic].losses, *runs[topic].ordering.losses) if topic in topics else ()
+    return (*bare.losses, *by_topic, *by_variable)
 
 
 def _nothing(path: Path, losses: Sequence[Loss]) -> SpecError:
@@ -266,29 +281,23 @@ def _damage(losses: Sequence[Loss]) -> str:
     return "\n".join(f"{loss.cause}: {loss.count} ({loss.detail})" for loss in losses)
 
 
-def _notes(
-    log: LogFile,
-    topics: Mapping[str, Samples],
-    runs: Mapping[str, _Run],
-    readings: Sequence[_Reading],
-    clock_notes: Sequence[str],
-) -> tuple[str, ...]:
-    notes = [*log.notes, *clock_notes]
-    for topic, samples in topics.items():
-        notes += runs[topic].ordering.notes
-        notes += _zero_note(samples)
+def _notes(bare: _Bare, readings: Sequence[_Reading]) -> tuple[str, ...]:
+    notes = [*bare.notes]
+    for run in bare.runs.values():
+        notes += run.ordering.notes
+        notes += _zero_note(run)
     for reading in readings:
         notes += reading.notes
     return tuple(notes)
 
 
-def _zero_note(samples: Samples) -> list[str]:
+def _zero_note(run: _Run) -> list[str]:
     """Samples in which all the numbers that are read are zero: often no measurement at all."""
-    columns = [c.numbers for c in samples.columns.values() if np.isfinite(c.numbers).any()]
+    columns = [c.numbers for c in run.columns.values() if np.isfinite(c.numbers).any()]
     if len(columns) < 2:
         return []
     zero = int(np.count_nonzero(np.logical_and.reduce([column == 0.0 for column in columns])))
     whole = columns[0].size
     if not zero:
         return []
-    return [f"{samples.topic}: in {zero} of {whole} samples everything that is read is zero"]
+    return [f"{run.topic}: in {zero} of {whole} samples everything that is read is zero"]

@@ -44,7 +44,7 @@ def sample_topic(streams: Sequence[Messages]) -> Samples:
     if len(parts) == 1:
         return parts[0][0]
     samples = [part for part, _ in parts]
-    rows = np.argsort(np.concatenate([places for _, places in parts]))
+    rows = np.argsort(np.concatenate([places for _, places in parts if places is not None]))
     stamps = [part.stamps for part in samples if part.stamps is not None]
     shared = [text for text in samples[0].columns if all(text in part.columns for part in samples)]
     return Samples(
@@ -64,15 +64,17 @@ def sample_sheet(sheet: Sheet, names: Sequence[str]) -> Samples:
     return Samples(sheet.name, sheet.times, None, columns, ())
 
 
-def _sample_stream(stream: Messages) -> tuple[Samples, Places]:
-    """The samples of one channel, and their places in the log."""
+def _sample_stream(stream: Messages) -> tuple[Samples, Places | None]:
+    """The samples of one channel, and their places in the log where others have its topic."""
     values = stream.values
     assert values is not None, "only channels that were read have samples"
     read = values.readable.size
-    times, places = stream.times[:read], stream.places[:read]
+    times = stream.times[:read]
+    places = None if stream.places is None else stream.places[:read]
     losses = []
     if bad := read - int(np.count_nonzero(values.readable)):
         losses.append(Loss("unreadable messages", bad, f"{stream.channel.topic}: {values.reason}"))
-        times, places = times[values.readable], places[values.readable]
+        times = times[values.readable]
+        places = None if places is None else places[values.readable]
     topic = stream.channel.topic
     return Samples(topic, times, values.stamps, values.columns, tuple(losses)), places

@@ -33,13 +33,14 @@ class Messages:
 
     count: how many there are. times: (count,) log times in nanoseconds, and places: (count,)
     their places among all messages of the log; both empty where the channel was not asked for.
+    places is None where no other channel has the same topic: then nobody needs them.
     values: what was read of the first of them; None where nothing was.
     """
 
     channel: Channel
     count: int
     times: Integers
-    places: Places
+    places: Places | None
     values: Values | None
 
 

@@ -142,13 +142,20 @@ def _read_part(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
     return read_mcap(path, wanted, tell)
 
 
+def _placed_behind(before: int, stream: Messages) -> Messages:
+    """The messages of one file, placed behind so many of the files before it."""
+    places = stream.places
+    if places is None:
+        # Alone in its file, but perhaps not in the folder.
+        places = np.arange(stream.times.size, dtype=np.uint32)
+    return replace(stream, places=places + np.uint32(before))
+
+
 def _joined(path: Path, logs: Sequence[MessageLog]) -> MessageLog:
     streams: list[Messages] = []
     for log in logs:
         before = sum(stream.count for stream in streams)
-        streams += [
-            replace(stream, places=stream.places + np.uint32(before)) for stream in log.streams
-        ]
+        streams += [_placed_behind(before, stream) for stream in log.streams]
     return MessageLog(
         source=str(path),
         kind=f"folder of {logs[0].kind}",

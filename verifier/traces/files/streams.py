@@ -2,6 +2,7 @@
 
 import mmap
 from array import array
+from collections import Counter
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar, final
@@ -154,16 +155,19 @@ class Gathering(Generic[Key]):
 
     def finished(self, source: str, kind: str) -> MessageLog:
         """The log, its channels in the order in which they were declared."""
+        streams = (*self._closed, *self._all())
+        of_topic = Counter(stream.channel.topic for stream in streams if stream.channel)
         described: list[Messages] = []
-        for stream in (*self._closed, *self._all()):
+        for stream in streams:
             stream.digest()
             if stream.channel is not None:
+                shared = of_topic[stream.channel.topic] > 1
                 described.append(
                     Messages(
                         channel=stream.channel,
                         count=stream.count,
                         times=np.frombuffer(stream.times, dtype=np.int64),
-                        places=np.frombuffer(stream.places, dtype=np.uint32),
+                        places=np.frombuffer(stream.places, dtype=np.uint32) if shared else None,
                         values=stream.reader.finished() if stream.reader else None,
                     )
                 )

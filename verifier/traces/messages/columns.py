@@ -1,5 +1,6 @@
 """A column: one value of every message, as a number or as text."""
 
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias, final
@@ -20,9 +21,7 @@ class Column:
     texts: tuple[str | None, ...] | None
 
     def rows(self, rows: Integers) -> "Column":
-        """These rows, in this order; itself where these are all of them, in their order."""
-        if rows.size == self.numbers.size and (rows[1:] > rows[:-1]).all():
-            return self
+        """These rows, in this order."""
         texts = self.texts
         if texts is not None:
             texts = tuple([texts[row] for row in rows])
@@ -54,15 +53,38 @@ def column(cells: Sequence[Cell]) -> Column:
     return Column(np.array(numbers, dtype=np.float64), None)
 
 
+@final
+class GrowingColumn:
+    """A column, part by part; numbers are written as text where any part has text.
+
+    The numbers lie in one buffer that grows where it is: to keep the parts of a long log, and to
+    join them in the end, takes twice the memory.
+    """
+
+    def __init__(self) -> None:
+        self._numbers = array("d")
+        self._texts: list[str | None] | None = None
+
+    def add(self, part: Column) -> None:
+        """The next part."""
+        if part.texts is not None and self._texts is None:
+            self._texts = _written(np.array(self._numbers))
+        if self._texts is not None:
+            self._texts += _written(part.numbers) if part.texts is None else part.texts
+        self._numbers.frombytes(part.numbers.tobytes())
+
+    def finished(self) -> Column:
+        """All parts, one behind the other; nothing may be added afterwards."""
+        texts = None if self._texts is None else tuple(self._texts)
+        return Column(np.frombuffer(self._numbers, dtype=np.float64), texts)
+
+
 def joined(parts: Sequence[Column]) -> Column:
-    """The parts, one after the other; numbers are written as text where any part has text."""
-    if len(parts) == 1:
-        return parts[0]
-    numbers = np.concatenate([np.zeros(0), *(part.numbers for part in parts)])
-    if all(part.texts is None for part in parts):
-        return Column(numbers, None)
-    texts = (text for part in parts for text in (part.texts or _written(part.numbers)))
-    return Column(numbers, tuple(texts))
+    """The parts, one behind the other; numbers are written as text where any part has text."""
+    whole = GrowingColumn()
+    for part in parts:
+        whole.add(part)
+    return whole.finished()
 
 
 def _written(numbers: Array) -> list[str | None]:

@@ -1,5 +1,6 @@
 """The values at given paths in the messages of one channel, decoded batch by batch."""
 
+from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import final
@@ -9,7 +10,7 @@ import numpy as np
 from runtime.arrays import Array, Booleans, Integers
 from verifier.traces.messages.channel import Channel
 from verifier.traces.messages.codecs import Codec, find_codec
-from verifier.traces.messages.columns import Column, joined
+from verifier.traces.messages.columns import Column, GrowingColumn
 from verifier.traces.messages.fields import FieldError, StampLeaves, check, leaves, stamp_leaves
 from verifier.traces.messages.leaves import all_paths
 from verifier.traces.messages.paths import MessagePath, Steps
@@ -50,9 +51,9 @@ class Reader:
         self._leaves: dict[str, tuple[Steps, ...]] = {}
         self._stamp: StampLeaves | None = None
         self._asked: list[Steps] = []
-        self._columns: dict[str, list[Column]] = {}
-        self._stamps: list[Integers] = []
-        self._readable: list[Booleans] = []
+        self._columns: dict[str, GrowingColumn] = {}
+        self._stamps = array("q")
+        self._readable = bytearray()
         self._reason = ""
         self._faults: dict[str, FieldError] = {}
         self._fault: FieldError | None = None
@@ -62,36 +63,32 @@ class Reader:
         if self._codec is None and self._fault is None:
             self._open(payloads)
         if self._codec is None:
-            self._readable.append(np.zeros(len(payloads), dtype=np.bool_))
+            self._readable += bytes(len(payloads))
             return
         decoded = self._codec.decode(payloads, self._asked)
-        self._readable.append(decoded.readable)
+        self._readable += decoded.readable.tobytes()
         self._reason = self._reason or decoded.reason
         rows = np.flatnonzero(decoded.readable)
         whole = rows.size == len(payloads)
         columns = decoded.columns if whole else tuple(one.rows(rows) for one in decoded.columns)
         found = dict(zip(self._asked, columns, strict=True))
         for path in self._paths:
-            self._columns[path.text].append(
+            self._columns[path.text].add(
                 _value(path, [found[leaf] for leaf in self._leaves[path.text]])
             )
         if self._stamp:
             seconds, rest = found[self._stamp.seconds], found[self._stamp.nanoseconds]
-            self._stamps.append(_stamps(seconds, rest))
+            self._stamps.frombytes(_stamps(seconds, rest).tobytes())
 
     def finished(self) -> Values:
-        """All that was read; the reader keeps nothing."""
+        """All that was read; nothing may be fed afterwards."""
         if self._codec is None and self._fault is None:
             self._open(())
-        columns = {}
-        for path in self._paths:
-            columns[path.text] = joined(self._columns.pop(path.text))
-        empty = [np.zeros(0, dtype=np.int64)]
         return Values(
-            readable=np.concatenate([np.zeros(0, dtype=np.bool_), *self._readable]),
+            readable=np.frombuffer(self._readable, dtype=np.bool_),
             reason=self._reason,
-            stamps=np.concatenate(empty + self._stamps) if self._stamp else None,
-            columns=columns,
+            stamps=np.frombuffer(self._stamps, dtype=np.int64) if self._stamp else None,
+            columns={text: column.finished() for text, column in self._columns.items()},
             faults=self._faults,
             fault=self._fault,
         )
@@ -119,7 +116,7 @@ class Reader:
         if self._stamp:
             stamp = (self._stamp.seconds, self._stamp.nanoseconds)
             self._asked += [leaf for leaf in stamp if leaf not in self._asked]
-        self._columns = {path.text: [] for path in self._paths}
+        self._columns = {path.text: GrowingColumn() for path in self._paths}
 
 
 def _value(path: MessagePath, found: Sequence[Column]) -> Column:
