@@ -103,5 +103,6 @@ def _verification(program: Program) -> Iterator[str]:
     if program.judge_when is not None:
         yield f"  judge when  {program.judge_when.text}"
     for realization in program.realizes:
-        rest = f"{realization.channel} as {realization.mode}"
+        sign = "-" if realization.sign < 0.0 else ""
+        rest = f"{sign}{realization.channel} as {realization.mode}"
         yield _line("realizes", realization.variable, rest, realization.origin)

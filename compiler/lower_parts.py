@@ -264,9 +264,11 @@ def lower_judge_when(expressions: Expressions) -> Code | None:
 
 
 def lower_realizes(spec: BehaviorSpec, loaded: Loaded) -> tuple[Realization, ...]:
-    """The channels that the driven states act on."""
+    """The channels that the behavior acts on."""
     return tuple(
-        Realization(name, channel.name, channel.mode, loaded.origin(("realizes", name)))
+        Realization(
+            name, channel.name, channel.mode, loaded.origin(("realizes", name)), channel.sign
+        )
         for name, channel in spec.realizes.items()
     )
 

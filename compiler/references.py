@@ -121,10 +121,11 @@ def _check_arrows(
 def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> None:
     driven = [state.name for state in declared.driven]
     readable = [*declared.continuous, *(c.name for c in declared.controls)]
+    set_points = [*spec.output, *(c.name for c in declared.controls)]
     sections: list[tuple[Path, Iterable[str], list[str], str]] = [
         (("table", "tolerance"), spec.table.tolerance, driven, "driven state"),
         (("table", "nodes"), spec.table.nodes, readable, "state or control"),
-        (("realizes",), spec.realizes, driven, "driven state"),
+        (("realizes",), spec.realizes, [*driven, *set_points], "driven state, output or control"),
     ]
     if spec.fidelity is not None:
         judged = spec.fidelity.tolerance
@@ -138,6 +139,12 @@ def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) 
             if name not in known:
                 remedy = did_you_mean(name, sorted(known)) or there_are(sorted(known))
                 findings.error("S208", (*path, name), f"'{name}' is no {what}", remedy, key=True)
+    for name in set_points:
+        channel = spec.realizes.get(name)
+        if channel is not None and channel.mode != "set-point":
+            message = f"'{name}' has no rate of its own, so it can't be realized as {channel.mode}"
+            remedy = f"write '{channel.name} as set-point'"
+            findings.error("S214", ("realizes", name), message, remedy)
 
 
 def _check_trace(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> None:

@@ -251,12 +251,16 @@ class Fidelity:
 @final
 @dataclass(frozen=True, slots=True)
 class Realization:
-    """The channel of a body that a driven variable acts on, and as what."""
+    """The channel of a body that a variable acts on, as what, and with which sign (1 or -1).
+
+    variable: a driven state, or an output or control (as set-point).
+    """
 
     variable: str
     channel: str
     mode: str
     origin: str
+    sign: float = 1.0
 
 
 @final

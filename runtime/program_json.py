@@ -21,7 +21,7 @@ from runtime.code import Code
 from runtime.container import ArtifactError
 from runtime.program import Program
 
-FORMAT: Final = 2
+FORMAT: Final = 3
 """The version of what stands in `program.json`; a change of meaning raises it."""
 
 Load = Callable[[str, tuple[int, ...]], Array]

@@ -184,7 +184,8 @@ class BehaviorSpec(StrictModel):
     realizes: Mapping[Name, ChannelText] = Field(
         default={},
         description="The channel of a body that a driven state acts on: `CHANNEL as rate`, `as "
-        "set-point` or `as acceleration`.",
+        "set-point` or `as acceleration`; `-CHANNEL` turns the sign. An output or control acts `as "
+        "set-point`.",
         examples=[{"v": "base.speed as set-point"}],
     )
     feasibility: Feasibility | None = Field(

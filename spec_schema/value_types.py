@@ -43,10 +43,11 @@ class StrictModel(BaseModel):
 @final
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A channel of a body, and as what a driven variable acts on it."""
+    """A channel of a body, and as what a variable acts on it; `sign` is 1 or -1."""
 
     name: str
     mode: str
+    sign: float = 1.0
 
 
 def _identifier(text: str) -> str:
@@ -211,13 +212,14 @@ def _version(value: object) -> int:
 def _channel(value: object) -> Channel:
     if not isinstance(value, str):
         raise refused("S103", f"expected a channel, got {described(value)}", _CHANNEL_HELP)
-    name, _, mode = (part.strip() for part in value.partition(" as "))
+    written, _, mode = (part.strip() for part in value.partition(" as "))
+    name = written.removeprefix("-").strip()
     if not re.fullmatch(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", name, re.ASCII) or not mode:
         raise refused("S120", f"{quoted(value)} names no channel and how it is set", _CHANNEL_HELP)
     if mode not in _MODES:
         remedy = did_you_mean(mode, _MODES) or f"expected one of: {', '.join(_MODES)}"
         raise refused("S104", f"a channel can't be realized as {quoted(mode)}", remedy)
-    return Channel(name, mode)
+    return Channel(name, mode, -1.0 if written.startswith("-") else 1.0)
 
 
 def _callee(text: str) -> str:
@@ -278,9 +280,9 @@ Version: TypeAlias = Annotated[int, PlainValidator(_version), _schema(const=1)]
 ChannelText: TypeAlias = Annotated[
     Channel,
     PlainValidator(_channel),
-    _schema(type="string", pattern=f"^[A-Za-z_][A-Za-z0-9_.]* as ({'|'.join(_MODES)})$"),
+    _schema(type="string", pattern=f"^-?[A-Za-z_][A-Za-z0-9_.]* as ({'|'.join(_MODES)})$"),
 ]
-"""A channel and its mode as `CHANNEL as MODE`."""
+"""A channel and its mode as `CHANNEL as MODE`, or `-CHANNEL as MODE`."""
 
 Callee: TypeAlias = Annotated[
     str, AfterValidator(_callee), _schema(type="string", pattern=f"^{_CALL}$")

@@ -235,8 +235,8 @@ def test_a_forgery_without_a_change_is_the_artifact_itself() -> None:
 
 TABLE = ("program", "field", "tables", 0)
 FORGERIES: dict[str, tuple[Callable[[Document], None], str]] = {
-    "version": (setter("format", to=3), "format 3, this version reads 2"),
-    "format real": (setter("format", to=2.0), "not written by specc"),
+    "version": (setter("format", to=4), "format 4, this version reads 3"),
+    "format real": (setter("format", to=3.0), "not written by specc"),
     "operation": (setter("program", "judge_when", to="x boom"), "'boom'"),
     "two values": (setter("program", "judge_when", to="x x"), "leaves 2 values"),
     "state in coefficient": (setter("program", "field", "terms", 0, "coefficient", to="x"), "'x'"),
@@ -289,8 +289,8 @@ def test_a_forged_program_is_refused_with_the_reason(name: str) -> None:
     [
         b"[" * 100_000,
         b"[]",
-        b'{"format":2,"program":' + b"9" * 10_000 + b"}",
-        b'{"format":2,"program":NaN}',
+        b'{"format":3,"program":' + b"9" * 10_000 + b"}",
+        b'{"format":3,"program":NaN}',
         b"\xff\xfe",
         b"",
     ],
