@@ -20,7 +20,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from runtime.program import Binding, Field, Kind, Origin, Program, Role, State, Unit
+from tests.study.bound import bound
 from verifier.traces.read import read_trace
 
 TYPE = "nav_msgs/msg/Odometry"
@@ -32,7 +32,6 @@ PATHS = {
     "v": "/odom.twist.twist.linear.x",
     "w": "/odom.twist.twist.angular.z",
 }
-ONE = Unit("1", 1.0)
 
 Numbers = npt.NDArray[np.float64]
 
@@ -81,24 +80,9 @@ def write(path: Path, count: int) -> None:
     writer.finish()
 
 
-def program() -> Program:
-    """A program that is bound to the six numbers."""
-    states = tuple(
-        State(n, Kind.CONTINUOUS, Role.BOTH, ONE, -1e9, 1e9, 0.0, None, (), ("a", "b"), "", "s:1:1")
-        for n in PATHS
-    )
-    bindings = tuple(
-        Binding(name, path, ONE, 0.0, 1.0, 0.0, None, (), "s:1:1") for name, path in PATHS.items()
-    )
-    return Program(
-        "bench", "", states, (), (), (), Field(tuple(PATHS), "formula", 0.0, (), (), (), None, ""),
-        None, bindings, None, (), None, Origin("s", "", ""),
-    )  # fmt: skip
-
-
 def by_specc(path: Path) -> Numbers:
     """This project's reader, with ordering, clocks and all."""
-    trace = read_trace(path, program())
+    trace = read_trace(path, bound(PATHS))
     assert not trace.losses
     return np.stack([trace.series[name].values for name in PATHS])
 

@@ -19,11 +19,10 @@ import numpy.typing as npt
 import zstandard
 from rosbags.typesys import Stores, get_typestore
 
-from runtime.program import Binding, Field, Kind, Origin, Program, Role, State, Unit
+from tests.study.bound import bound
 from verifier.traces.inventory import inspect
 from verifier.traces.read import read_trace
 
-ONE = Unit("1", 1.0)
 TOPICS = {
     "/odom": "geometry_msgs/msg/TwistStamped",
     "/imu": "geometry_msgs/msg/Vector3Stamped",
@@ -114,21 +113,6 @@ def write(path: Path, count: int, block: int) -> None:
         file.write(record(15, bytes(4)) + record(2, bytes(20)) + MAGIC)
 
 
-def program() -> Program:
-    """A program that is bound to five numbers of three topics."""
-    states = tuple(
-        State(n, Kind.CONTINUOUS, Role.BOTH, ONE, -1e9, 1e9, 0.0, None, (), ("a", "b"), "", "s:1:1")
-        for n in PATHS
-    )
-    bindings = tuple(
-        Binding(name, path, ONE, 0.0, 1.0, 0.0, None, (), "s:1:1") for name, path in PATHS.items()
-    )
-    return Program(
-        "large", "", states, (), (), (), Field(tuple(PATHS), "formula", 0.0, (), (), (), None, ""),
-        None, bindings, None, (), None, Origin("s", "", ""),
-    )  # fmt: skip
-
-
 def own_memory() -> int:
     """The process's own memory in bytes."""
     lines = Path("/proc/self/status").read_text().splitlines()
@@ -172,7 +156,7 @@ def main() -> None:
     size = chosen.file.stat().st_size
     print(f"{chosen.file}: {size / 1e9:.2f} GB")
     with Watch() as watch:
-        trace = read_trace(chosen.file, program())
+        trace = read_trace(chosen.file, bound(PATHS))
     count = sum(series.times.size for series in trace.series.values())
     told = f"{watch.took:.1f} s CPU, {(watch.most - watch.before) / 1e6:.0f} MB above before"
     print(f"read for a spec: {count} values, {len(trace.losses)} losses, {told}")
