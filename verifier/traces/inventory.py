@@ -6,7 +6,7 @@ from typing import final
 
 import numpy as np
 
-from runtime.arrays import Integers
+from runtime.arrays import Array, Integers
 from verifier.traces.clock import stamp_fault
 from verifier.traces.files.log import MessageLog, Sheet, Wanted
 from verifier.traces.files.open_log import attached_program, open_log
@@ -17,6 +17,9 @@ from verifier.traces.trace import Loss
 
 BYTES_PER_TOPIC = 1 << 25
 MOST_TEXTS = 20
+MOST_CODES = 8
+MOST_LOOKED_AT = 1000
+"""Numbers, before all of a column are sorted."""
 
 
 @final
@@ -25,7 +28,8 @@ class FieldInfo:
     """One value of a topic's messages; `path` is written as a spec's `trace:` block wants it.
 
     first, low, high: of the sampled numbers in SI or as logged; None for a text, or where no
-    number was finite. texts: the distinct texts, sorted.
+    number was finite. texts: the distinct texts, sorted. codes: the distinct numbers, sorted,
+    where they are few and whole. wraps: how often the number jumps over most of its range.
     """
 
     path: str
@@ -33,6 +37,8 @@ class FieldInfo:
     low: float | None
     high: float | None
     texts: tuple[str, ...]
+    codes: tuple[int, ...] = ()
+    wraps: int = 0
 
     @property
     def is_text(self) -> bool:
@@ -159,9 +165,25 @@ def _field_info(path: str, column: Column) -> FieldInfo:
     numbers = column.numbers[np.isfinite(column.numbers)]
     if numbers.size:
         first, low, high = float(numbers[0]), float(numbers.min()), float(numbers.max())
-        return FieldInfo(path, first, low, high, ())
+        return FieldInfo(path, first, low, high, (), _codes(numbers), _wraps(numbers))
     distinct = tuple(sorted({text for text in column.texts or () if text})[:MOST_TEXTS])
     return FieldInfo(path, None, None, None, distinct)
+
+
+def _codes(numbers: Array) -> tuple[int, ...]:
+    """The distinct numbers where they are few and whole, else nothing."""
+    head = np.unique(numbers[:MOST_LOOKED_AT])
+    if head.size > MOST_CODES or (head != np.round(head)).any():
+        return ()
+    distinct = np.unique(numbers)
+    is_few = distinct.size <= MOST_CODES and bool((distinct == np.round(distinct)).all())
+    return tuple(int(number) for number in distinct) if is_few else ()
+
+
+def _wraps(numbers: Array) -> int:
+    """How often the number jumps over nine tenths of its range, as an angle on the circle does."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return int(np.count_nonzero(np.abs(np.diff(numbers)) > 0.9 * np.ptp(numbers)))
 
 
 def _rate(times: Integers) -> float:
