@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from spec_schema.diagnostics import render
-from specc.runs import Outcome, Runs, Unusable, counted, source_of, unusable, verifications
+from specc.runs import Outcome, Pool, Runs, Unusable, counted, source_of, unusable, verifications
 from verifier.report.examination_text import examination_text
-from verifier.report.layout import section, table, wrapped
+from verifier.report.layout import bullets, section, table, wrapped
 from verifier.report.report import Report, Verdict
 from verifier.report.wording import percent, seconds, shown
 
@@ -22,7 +22,7 @@ def runs_table(runs: Runs) -> str:
         for part in (
             table([header, *rows]),
             section("why", [wrapped(reason) for reason in reasons_of(runs.outcomes)]),
-            *(section(title, [wrapped(r) for r in reasons]) for title, reasons in told_of(runs)),
+            *(section(title, blocks) for title, blocks in _together(runs)),
             last,
         )
         if part
@@ -38,20 +38,40 @@ def runs_text(runs: Runs) -> str:
     return "\n\n\n".join(parts)
 
 
-def told_of(runs: Runs) -> list[tuple[str, tuple[str, ...]]]:
-    """Of each common verdict a title, its reasons, and what to do next."""
+def _together(runs: Runs) -> list[tuple[str, list[str]]]:
+    """Of each common verdict a title, its reasons, and what to do next where it decides."""
     return [
         (
             f"{pool.report.trace.source}: {pool.report.verdict.upper()}",
-            (*pool.report.reasons, *pool.report.advice),
+            [*map(wrapped, pool.report.reasons), bullets(advice_of(pool))],
         )
         for pool in runs.pools
     ]
 
 
+def advice_of(pool: Pool) -> tuple[str, ...]:
+    """What to do next about a common verdict; nothing where one recording fails, which decides."""
+    fails = any(each.report.verdict is Verdict.FAIL for each in pool.members)
+    return () if fails and pool.report.verdict is not Verdict.FAIL else pool.report.advice
+
+
 def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
-    """Why each recording that did not pass did not: `run.mcap: …`."""
-    return tuple(f"{source_of(each)}: {_why(each)}" for each in outcomes if _why(each))
+    """Why each recording that did not pass did not: `run.mcap: FAIL: …`, what decides first."""
+    told = sorted((each for each in outcomes if _why(each)), key=_rank)
+    return tuple(f"{source_of(each)}: {_word(each)}{_why(each)}" for each in told)
+
+
+def _rank(outcome: Outcome) -> int:
+    """Those that fail first, then those that can't be used."""
+    if isinstance(outcome, Unusable):
+        return 1
+    return 0 if outcome.report.verdict is Verdict.FAIL else 2
+
+
+def _word(outcome: Outcome) -> str:
+    if isinstance(outcome, Unusable):
+        return "can't be used: "
+    return f"{outcome.report.verdict.upper()}: "
 
 
 def columns_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from verifier.diagnosis.diagnose import diagnose
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.limits.limits import limits_of
+from verifier.report.advice import advised
 from verifier.report.examination import Examination
 from verifier.robot_topology.compare import compare_features
 from verifier.scores.scores import scores_of
@@ -54,9 +55,10 @@ def explain(
         return Examination(report, origins=origins)
     tell("why it departs")
     diagnosis = diagnose(program, trace, study, report)
+    advisory = advised(report, diagnosis, judgement.switching)
     tell("features of the field")
     features = compare_features(program, trace, study)
-    partial = Examination(report, judgement.switching, diagnosis, None, features, None, origins)
+    partial = Examination(advisory, judgement.switching, diagnosis, None, features, None, origins)
     if study is None:
         return partial
     tell("the limits of this trace")

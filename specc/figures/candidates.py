@@ -6,13 +6,14 @@ from matplotlib.figure import Figure
 
 from specc.figures.style import BLUE, FAINT, INK, bare, framed, look
 from verifier.report.diagnosis import Diagnosis
+from verifier.report.why import ranked
 
 MOST: Final = 10
 
 
 def draw_candidates(diagnosis: Diagnosis) -> Figure:
-    """A bar per candidate, best first: full where the diagnosis names it, pale elsewhere."""
-    shown = diagnosis.candidates[:MOST]
+    """A bar per candidate: first those that the diagnosis names, full; then the others, pale."""
+    shown = ranked(diagnosis)[:MOST]
     with look():
         figure = Figure(figsize=(7.2, 0.6 + 0.27 * len(shown)))
         left = 0.3 + min(3.0, 0.075 * max(len(each.label) for each in shown))
@@ -29,5 +30,5 @@ def draw_candidates(diagnosis: Diagnosis) -> Figure:
         axes.set_yticks(range(len(shown)), [each.label for each in shown])
         axes.set_ylim(len(shown) - 0.4, -0.6)
         axes.set_xlim(0.0, 100.0)
-        axes.set_xlabel("squared error beyond noise explained in held-out windows [%]")
+        axes.set_xlabel("explained of the error in held-out windows [%]")
     return figure

@@ -23,9 +23,9 @@ def draw_windows(variable: VariableResult) -> Figure:
     columns = min(COLUMNS, max(1, len(views)))
     rows = -(-len(views) // columns) or 1
     with look():
-        figure = Figure(figsize=(7.2, 0.75 + 1.65 * rows))
-        grid = framed(figure, rows, columns, (0.85, 0.1, 0.55, 0.5))
-        grid.update(wspace=0.32, hspace=0.38)
+        figure = Figure(figsize=(7.2, 0.85 + 1.8 * rows))
+        grid = framed(figure, rows, columns, (0.85, 0.1, 0.55, 0.6))
+        grid.update(wspace=0.34, hspace=0.6)
         for k, view in enumerate(views):
             _panel(figure.add_subplot(grid[divmod(k, columns)]), variable, view)
         figure.supxlabel("time since the window's start [s]", fontsize=9.0, y=0.02)

@@ -18,11 +18,19 @@ class Plot:
 @final
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table whose first column names its rows; words: how many columns after it are words."""
+    """A table whose first column names its rows; words are set to the left, numbers to the right.
+
+    first: so many columns after the names are words; last: so many at the end.
+    """
 
     titles: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
-    words: int = 0
+    first: int = 0
+    last: int = 0
+
+    def is_number(self, column: int) -> bool:
+        """Whether a column holds numbers."""
+        return self.first < column < len(self.titles) - self.last
 
 
 @final
@@ -120,6 +128,7 @@ class RunsPage:
     sign: str
     headline: str
     reasons: tuple[str, ...]
+    advice: tuple[str, ...]
     columns: tuple[str, ...]
     rows: tuple[RunRow, ...]
     how: str

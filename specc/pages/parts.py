@@ -1,6 +1,8 @@
 """The sections that explain a verdict, as parts of the page."""
 
 import math
+from collections.abc import Callable
+from typing import Final
 
 from runtime.program import Unit
 from specc.figures.candidates import draw_candidates
@@ -12,20 +14,29 @@ from specc.figures.switches import draw_switches
 from specc.pages.inline_svg import inline_svg
 from specc.pages.page import Block, Part, Plot, Table
 from specc.pages.sentences import ranged
-from verifier.report.diagnosis import Candidate, Diagnosis, Refitted
+from verifier.report.diagnosis import Candidate, Diagnosis, FittedNumber, Refitted
 from verifier.report.examination import Examination
 from verifier.report.features import Estimate, FeatureNumber, Features
 from verifier.report.limits import Limits
 from verifier.report.scores import Scores, VariableScores
 from verifier.report.switching import Switching, SwitchSort, Way
+from verifier.report.why import ranked, why
 from verifier.report.wording import percent
+
+COUNTS: Final[dict[str, Callable[[Way], int]]] = {
+    "expected": lambda way: way.expected,
+    "unexpected": lambda way: way.unexpected,
+    "missed": lambda way: way.missed,
+    "elsewhere": lambda way: way.wrong,
+}
+"""The sorts of switches; of those that never occurred, no column is shown."""
 
 
 def explanations(examination: Examination, prefix: str) -> tuple[Part, ...]:
     """What speaks of the robot; `prefix` keeps the figures of several traces apart."""
     of = examination
     parts = (
-        of.diagnosis and diagnosis_part(of.diagnosis, prefix),
+        of.diagnosis and diagnosis_part(of.diagnosis, of.switching, prefix),
         of.switching and switching_part(of.switching, prefix),
         of.features and features_part(of.features, prefix),
     )
@@ -44,27 +55,30 @@ def plotted(figure: Picture, name: str, caption: str) -> Plot:
     return Plot(inline_svg(figure, name, caption), caption)
 
 
-def diagnosis_part(diagnosis: Diagnosis, prefix: str) -> Part:
+def diagnosis_part(diagnosis: Diagnosis, switching: Switching | None, prefix: str) -> Part:
     """Why the robot departs."""
-    blocks = [Block("", diagnosis.sentences)]
+    title, sentences = why(diagnosis, switching)
+    blocks = [Block("", sentences, is_list=True)]
     if diagnosis.refitted:
         titles = ("number", "spec", "refitted", "its interval", "stands in")
         rows = tuple(_refitted(each) for each in diagnosis.refitted)
-        blocks.append(Block("The numbers that this trace can tell", table=Table(titles, rows)))
+        table = Table(titles, rows, last=1)
+        blocks.append(Block("The numbers that this trace can tell", table=table))
     if diagnosis.candidates:
         caption = (
             "How much of the error each explanation takes away in windows that it was not fitted"
-            " to, one at a time: full bars are named above, pale ones are not. Candidates named"
-            " earlier stay in while later ones are tried."
+            " to. Full bars are named above, in the order in which they were taken in: each is a"
+            " share of what those before it left. Pale ones were tried instead, one at a time."
         )
         figure = plotted(draw_candidates(diagnosis), f"{prefix}candidates", caption)
-        titles = ("explanation", "numbers", "explains", "gain", "as good")
-        rows = tuple(_candidate(each) for each in diagnosis.candidates)
-        blocks.append(Block("What would explain it", figure=figure, table=Table(titles, rows, 1)))
+        titles = ("explanation", "numbers", "explains", "log-likelihood", "as good")
+        rows = tuple(_candidate(each) for each in ranked(diagnosis))
+        table = Table(titles, rows, first=1, last=1)
+        blocks.append(Block("What would explain it", figure=figure, table=table))
     if diagnosis.differs:
         sentences = tuple(each.sentence for each in diagnosis.differs)
         blocks.append(Block("Where the structure differs", sentences, is_list=True))
-    return Part(f"Why: {diagnosis.told}", tuple(blocks))
+    return Part(f"Why: {title}", tuple(blocks))
 
 
 def _refitted(each: Refitted) -> tuple[str, ...]:
@@ -79,18 +93,25 @@ def _refitted(each: Refitted) -> tuple[str, ...]:
 
 
 def _candidate(each: Candidate) -> tuple[str, ...]:
-    numbers = ", ".join(f"{n.name} {quantity(n.value, n.unit)}" for n in each.numbers)
+    numbers = ", ".join(_number(n) for n in each.numbers)
     share = percent(max(each.evidence.share, 0.0))
     return (each.label, numbers, share, number(each.evidence.gain), ", ".join(each.alike) or "–")
 
 
+def _number(each: FittedNumber) -> str:
+    """A delay without its sign: the label says late or early."""
+    value = abs(each.value) if each.name == "delay" else each.value
+    return f"{each.name} {quantity(value, each.unit)}"
+
+
 def switching_part(switching: Switching, prefix: str) -> Part:
     """The changes of mode."""
-    titles = ("change", "judgement", "expected", "unexpected", "missed", "elsewhere")
-    rows = tuple(_way(way) for way in switching.ways)
+    counted = [title for title in COUNTS if any(COUNTS[title](way) for way in switching.ways)]
+    titles = ("change", "judgement", *counted)
+    rows = tuple(_way(way, counted) for way in switching.ways)
     blocks = [
-        Block("", switching.reasons),
-        Block("", table=Table((*titles, "late", "its interval", "allowed"), rows, 1)),
+        Block("", switching.reasons, is_list=True),
+        Block("", table=Table((*titles, "late", "its interval", "allowed"), rows, first=1)),
     ]
     if any(s.sort is SwitchSort.EXPECTED for s in switching.switches):
         caption = (
@@ -115,12 +136,12 @@ def switching_part(switching: Switching, prefix: str) -> Part:
     )
     if jumps:
         columns = ("state just after", "judgement", "", "off by", "its interval", "tolerance", "n")
-        blocks.append(Block("Jumps", table=Table(columns, jumps, 2)))
+        blocks.append(Block("Jumps", table=Table(columns, jumps, first=2)))
     return Part(f"Changes of {switching.mode}: {switching.standing}", tuple(blocks))
 
 
-def _way(way: Way) -> tuple[str, ...]:
-    counts = (way.expected, way.unexpected, way.missed, way.wrong)
+def _way(way: Way, counted: list[str]) -> tuple[str, ...]:
+    counts = [COUNTS[title](way) for title in counted]
     timing = way.timing
     times = (
         ("–", "–", "–")
@@ -152,7 +173,7 @@ def features_part(features: Features, prefix: str) -> Part:
     )
     if rows:
         titles = ("feature", "number", "judgement", "spec", "seen", "refitted field", "allowed")
-        blocks.append(Block("", table=Table(titles, rows, 2)))
+        blocks.append(Block("", table=Table(titles, rows, first=2)))
     blocks.append(Block("", features.notes, is_list=True))
     return Part("Features of the field", tuple(blocks))
 
@@ -175,7 +196,7 @@ def limits_part(limits: Limits, prefix: str) -> Part:
     if limits.not_told:
         rows = tuple((each.what, each.why, each.suggestion) for each in limits.not_told)
         titles = ("not told", "because", "what would tell")
-        blocks.append(Block("What this trace can't tell", table=Table(titles, rows, 2)))
+        blocks.append(Block("What this trace can't tell", table=Table(titles, rows, first=2)))
     if limits.caught:
         caption = (
             "Faults planted into copies of this very trace, which were then judged like the trace"

@@ -17,6 +17,7 @@ from specc.figures.verdicts import draw_verdicts
 from specc.figures.windows import draw_windows
 from specc.pages.page import Page, Plot, Row, RunsPage, Table, VariablePart
 from specc.pages.parts import explanations, limits_of_verdict, plotted
+from specc.pages.prose import prose
 from specc.pages.sentences import (
     about_coverage,
     about_variable,
@@ -50,6 +51,7 @@ def rendered(template: str, page: Page | RunsPage) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["prose"] = prose
     # The style sheet is ours; within <style> it must not be escaped.
     sheet = environment.get_template("report.css").render()
     return environment.get_template(template).render(page=page, style=Markup(sheet))  # noqa: S704
@@ -157,7 +159,7 @@ def _exclusions(report: Report) -> Table | None:
 
 def _losses(report: Report) -> Table | None:
     rows = tuple((loss.cause, str(loss.count), loss.detail) for loss in report.losses)
-    return Table(("what", "how often", "where"), rows) if rows else None
+    return Table(("what", "how often", "where"), rows, last=1) if rows else None
 
 
 def _provenance(report: Report) -> tuple[tuple[str, str], ...]:

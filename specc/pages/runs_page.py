@@ -7,7 +7,7 @@ from specc.figures.quantities import number, seconds
 from specc.pages.page import Page, RunRow, RunsPage
 from specc.pages.report_page import SIGNS, gathered, rendered
 from specc.runs import Outcome, Pool, Runs, Unusable, counted, verifications
-from specc.runs_text import column_of, columns_of, reasons_of
+from specc.runs_text import advice_of, column_of, columns_of, reasons_of
 from specc.verifying import Verification
 from verifier.report.report import Coverage, Report, Verdict
 from verifier.report.wording import percent
@@ -37,19 +37,23 @@ def gathered_runs(runs: Runs) -> RunsPage:
     )
     if _is_long(outcomes):
         how += " The variables of recordings that passed are not drawn."
-    own = tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes)
+    rows = tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes)
     common = tuple(_report_row(each.report, anchors[id(each)], columns) for each in runs.pools)
     pages = [(anchors[id(e)], _pool_page(e, anchors[id(e)])) for e in runs.pools]
     pages += [(anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found]
-    reasons = [reason for pool in runs.pools for reason in pool.report.reasons]
+    together = [reason for pool in runs.pools for reason in pool.report.reasons]
+    own = reasons_of(outcomes)
+    is_decided = worst is None or worst is Verdict.FAIL
+    reasons = (*own, *together) if is_decided else (*together, *own)
     return RunsPage(
         title=counted(outcomes),
         verdict="unusable" if worst is None else str(worst),
         sign="!" if worst is None else SIGNS[worst],
         headline=counted(outcomes),
-        reasons=(*reasons, *reasons_of(outcomes))[:MOST],
+        reasons=reasons[:MOST],
+        advice=tuple(sentence for pool in runs.pools for sentence in advice_of(pool)),
         columns=(*columns, "coverage", "judged", "lost"),
-        rows=(*own, *common),
+        rows=(*rows, *common),
         how=how,
         pages=tuple(pages),
     )

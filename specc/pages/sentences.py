@@ -3,13 +3,15 @@
 from runtime.program import Unit
 from specc.figures.quantities import number, quantity, seconds
 from verifier.report.report import Coverage, Interval, RegionMean, Report, VariableResult
-from verifier.report.wording import percent
+from verifier.report.situations import where
+from verifier.report.wording import digits_of, percent
 
 
 def ranged(interval: Interval, unit: Unit) -> str:
     """An interval in the user's unit: `0.01 … 0.03 m`."""
-    low = number(interval.low / unit.scale)
-    return f"{low} … {quantity(interval.high, unit)}"
+    ends = (interval.low / unit.scale, interval.high / unit.scale)
+    digits = digits_of(*ends)
+    return f"{number(ends[0], digits)} … {quantity(interval.high, unit, digits)}"
 
 
 def how_to_read_the_table(report: Report) -> str:
@@ -111,12 +113,12 @@ def about_variable(report: Report, variable: VariableResult) -> tuple[str, ...]:
             f"The sensor's values come in steps of {quantity(noise.quantum, variable.unit)}."
         )
     scatter = quantity(variable.scatter, variable.unit)
-    sentences.append(f"Single windows scatter by {scatter} around the mean of their part.")
+    sentences.append(f"Windows in the same situation scatter by {scatter} around their mean.")
     if variable.systematic > 0.0:
         size = quantity(variable.systematic, variable.unit)
         sentences.append(
-            f"At least {size} of the error is no chance: it comes back wherever the robot is in"
-            " the same situation."
+            f"An error of {size} at least is systematic: it repeats whenever the robot is in the"
+            " same situation."
         )
     if variable.worst is not None:
         sentences.append(about_region(report, variable, variable.worst))
@@ -125,18 +127,9 @@ def about_variable(report: Report, variable: VariableResult) -> tuple[str, ...]:
 
 def about_region(report: Report, variable: VariableResult, region: RegionMean) -> str:
     """Where the mean error is largest, and how large it is there."""
-    places = [f"{name} {value}" for name, value in region.values.items()]
-    places += [
-        f"{name} in {ranged(Interval(*ends), report.units.get(name, Unit('1', 1.0)))}"
-        for name, ends in region.bounds.items()
-    ]
-    if region.moved is not None:
-        places.append(f"moves of {quantity(region.moved, variable.unit)}")
-    if region.hurried is not None:
-        places.append(f"what drives it {'rising' if region.hurried > 0.0 else 'falling'}")
-    where = f"for {', '.join(places)}" if places else "everywhere"
+    place = where(region, variable.unit, report.units) or "over all windows"
     return (
-        f"The mean error is largest {where}: {quantity(region.mean, variable.unit)}"
+        f"The mean error is largest {place}: {quantity(region.mean, variable.unit)}"
         f" ({ranged(region.interval, variable.unit)}, {region.windows} windows,"
         f" {region.standing})."
     )

@@ -92,13 +92,13 @@ def test_the_verdict_and_its_reason_come_first(page: str) -> None:
     assert text.split()[:2] == ["✗", "fail"]
     order = [
         "heading departs by 1.8 deg",
+        "What to do next",
+        "drive the left third",
         "Every judged variable",
         "Coverage",
         "What was left out",
         "Where this comes from",
         "a3a3a3",
-        "What to do next",
-        "drive the left third",
     ]
     places = [text.index(part) for part in order]
     assert places == sorted(places)

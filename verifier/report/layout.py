@@ -1,23 +1,28 @@
 """Plain text laid out: wrapped sentences, bullets, sections and tables."""
 
+import re
 import textwrap
 from collections.abc import Sequence
 from typing import Final
 
 WIDTH: Final = 100
 INDENT: Final = "  "
+NO_BREAK: Final = "\u00a0"
 
 
 def wrapped(sentence: str, first: str = INDENT) -> str:
-    """A sentence on as many lines as it needs; the later ones are indented like the first."""
+    """A sentence on as many lines as it needs; the later ones are indented like the first.
+
+    No line ends between a number and its per cent or its doubt.
+    """
     return textwrap.fill(
-        sentence,
+        re.sub(r" (?=[%±])|(?<=±) ", NO_BREAK, sentence),
         width=WIDTH,
         initial_indent=first,
         subsequent_indent=" " * len(first),
         break_on_hyphens=False,
         break_long_words=False,
-    )
+    ).replace(NO_BREAK, " ")
 
 
 def bullets(sentences: Sequence[str]) -> str:

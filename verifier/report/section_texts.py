@@ -7,6 +7,7 @@ from verifier.report.layout import INDENT, bullets, section, table
 from verifier.report.limits import Limits
 from verifier.report.scores import Scores, VariableScores
 from verifier.report.switching import Switching
+from verifier.report.why import untaken, why
 from verifier.report.wording import number, percent, quantity, shown
 
 MOST_CANDIDATES = 5
@@ -16,7 +17,7 @@ def section_texts(examination: Examination) -> tuple[str, ...]:
     """The sections that were computed and have something to say, in the order of reading."""
     of = examination
     texts = (
-        "" if of.diagnosis is None else _diagnosis(of.diagnosis),
+        "" if of.diagnosis is None else _diagnosis(of.diagnosis, of.switching),
         "" if of.switching is None else _switching(of.switching),
         "" if of.features is None else _features(of.features),
         "" if of.limits is None else _limits(of.limits),
@@ -25,8 +26,8 @@ def section_texts(examination: Examination) -> tuple[str, ...]:
     return tuple(text for text in texts if text)
 
 
-def _diagnosis(diagnosis: Diagnosis) -> str:
-    others = [each for each in diagnosis.candidates if not each.is_taken][:MOST_CANDIDATES]
+def _diagnosis(diagnosis: Diagnosis, switching: Switching | None) -> str:
+    others = untaken(diagnosis)[:MOST_CANDIDATES]
     rows = [
         (
             each.label,
@@ -35,10 +36,11 @@ def _diagnosis(diagnosis: Diagnosis) -> str:
         )
         for each in others
     ]
-    blocks = [bullets(diagnosis.sentences)]
+    title, sentences = why(diagnosis, switching)
+    blocks = [bullets(sentences)]
     if rows:
         blocks.append(f"{INDENT}tried instead of the first:\n{table(rows, INDENT)}")
-    return section(f"why: {diagnosis.told}", blocks)
+    return section(f"why: {title}", blocks)
 
 
 def _number(each: FittedNumber) -> str:

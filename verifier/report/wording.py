@@ -11,17 +11,18 @@ CENTURIES: Final = 200.0 * YEAR
 """Later than so many seconds after 1970 no robot was recorded."""
 
 
-def number(value: float) -> str:
-    """Three significant digits, without an exponent where that stays short.
+def number(value: float, digits: int = 3) -> str:
+    """Three significant digits or so, without an exponent where that stays short.
 
     >>> number(0.0123456), number(1234.5), number(-2.0), number(1e-9), number(math.inf)
     ('0.0123', '1234', '-2', '1e-09', 'unbounded')
     """
     if math.isinf(value):
         return "unbounded"
-    if 100.0 <= abs(value) < 1e6:
+    size = abs(value)
+    if 10.0 ** (digits - 1) <= size < 1e6:
         return f"{value:.0f}"
-    return f"{value:.3g}"
+    return f"{value:.{digits}g}"
 
 
 def shown(value: float, unit: Unit) -> str:
@@ -39,8 +40,23 @@ def quantity(value: float, unit: Unit) -> str:
 
 
 def span(low: float, high: float, unit: Unit) -> str:
-    """`0.1 to 0.2 m`."""
-    return f"{shown(low, unit)} to {shown(high, unit)}{suffix(unit)}"
+    """Two values, in as many digits as tell them apart.
+
+    >>> span(0.1, 0.2, Unit("m", 1.0)), span(291.72, 292.34, Unit("K", 1.0))
+    ('0.1 to 0.2 m', '291.7 to 292.3 K')
+    """
+    ends = (low / unit.scale, high / unit.scale)
+    digits = digits_of(*ends)
+    return f"{number(ends[0], digits)} to {number(ends[1], digits)}{suffix(unit)}"
+
+
+def digits_of(low: float, high: float) -> int:
+    """How many significant digits show the width of a span within a tenth."""
+    size, width = max(abs(low), abs(high)), high - low
+    if not 0.0 < width < math.inf:
+        return 3
+    needed = math.floor(math.log10(size)) - math.floor(math.log10(0.2 * width)) + 1
+    return min(max(needed, 3), 6)
 
 
 def suffix(unit: Unit) -> str:

@@ -12,10 +12,10 @@ from verifier.report.report import (
     Coverage,
     HorizonFigure,
     Interval,
-    RegionMean,
     Standing,
     VariableResult,
 )
+from verifier.report.situations import where
 from verifier.report.wording import listed, number, percent, quantity, seconds, span
 
 EXPLAINS = 0.5
@@ -63,7 +63,7 @@ def _worst(result: VariableResult, units: dict[str, Unit]) -> str:
         return ": windows that are alike err alike, some above and some below the prediction"
     side = "above" if region.mean > 0.0 else "below"
     ends = sorted([abs(region.interval.low), abs(region.interval.high)])
-    place = where(region, result, units)
+    place = where(region, result.unit, units)
     return (
         f": {f'{place}, it' if place else 'it'} ends {quantity(abs(region.mean), result.unit)}"
         f" {side} the prediction on average (95 % interval {span(ends[0], ends[1], result.unit)},"
@@ -142,7 +142,7 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
         )
     open_ones = [r for r in result.regions if r.standing is not Standing.WITHIN]
     region = max(open_ones, key=lambda r: max(abs(r.interval.low), abs(r.interval.high)))
-    place = where(region, result, units)
+    place = where(region, result.unit, units)
     return (
         f"{departs} over all, but {f'{place} ' if place else ''}on average by"
         f" {quantity(region.mean, unit)} (95 % interval {_interval(region.interval, unit)},"
@@ -268,28 +268,6 @@ def _unseen_ranges(axis: CellAxis, empty: Booleans) -> list[str]:
         return [name for name, is_empty in zip(axis.values, empty, strict=True) if is_empty]
     edges = np.linspace(axis.low, axis.high, axis.count + 1)
     return [span(edges[a], edges[b], axis.unit) for a, b in _runs(empty)]
-
-
-def where(region: RegionMean, result: VariableResult, units: dict[str, Unit]) -> str:
-    """A situation in words, empty where it is every one.
-
-    `where x is 0 to 1 m and it should fall by 0.3 m`.
-    """
-    told = [f"{name} is {value}" for name, value in region.values.items()]
-    told += [
-        f"{name} is {span(low, high, units[name])}" for name, (low, high) in region.bounds.items()
-    ]
-    if region.moved is not None:
-        told.append(f"it should {_way(region.moved, result.unit)}")
-    if region.hurried is not None:
-        told.append(f"its rate should {'rise' if region.hurried > 0.0 else 'fall'} meanwhile")
-    return f"where {listed(told)}" if told else ""
-
-
-def _way(moved: float, unit: Unit) -> str:
-    if moved == 0.0:
-        return "stay"
-    return f"{'rise' if moved > 0.0 else 'fall'} by {quantity(abs(moved), unit)}"
 
 
 def _declared(evidence: Evidence, result: VariableResult) -> tuple[Array, Array]:

@@ -1,0 +1,51 @@
+"""What to do next, where more than the verdict is known: why the robot departs."""
+
+from dataclasses import replace
+from typing import Final
+
+from verifier.report.diagnosis import Candidate, CandidateKind, Diagnosis, Told
+from verifier.report.report import Report, Standing, Verdict
+from verifier.report.switching import Switching
+from verifier.report.wording import listed, quantity
+
+MOST: Final = 3
+"""So many explanations are named, at most."""
+
+
+def advised(report: Report, diagnosis: Diagnosis, switching: Switching | None) -> Report:
+    """The report, its advice begun by what would settle that the robot departs.
+
+    A PASS needs none, and where nothing was compared the report's own advice comes first.
+    """
+    if report.verdict is Verdict.PASS or not report.variables:
+        return report
+    advice = (*_of_diagnosis(report, diagnosis), *_of_switching(switching), *report.advice)
+    return replace(report, advice=tuple(dict.fromkeys(advice)))
+
+
+def _of_diagnosis(report: Report, diagnosis: Diagnosis) -> list[str]:
+    taken = [each for each in diagnosis.candidates if each.is_taken][:MOST]
+    if diagnosis.told not in {Told.SAME_STRUCTURE, Told.STRUCTURE_DIFFERS} or not taken:
+        return []
+    if all(each.kind is CandidateKind.PARAMETER for each in taken):
+        numbers = listed([_number(each) for each in taken])
+        fit = f"specc fit {report.trace.source} --spec {report.spec.file}"
+        return [
+            (
+                f"if the robot is as it should be, the spec has to say {numbers} (`{fit}` edits"
+                " it); else mend the robot"
+            )
+        ]
+    return [f"settle first what explains it: {listed([each.label for each in taken])}"]
+
+
+def _number(candidate: Candidate) -> str:
+    number = candidate.numbers[0]
+    return f"{candidate.label} = {quantity(number.value, number.unit)}"
+
+
+def _of_switching(switching: Switching | None) -> list[str]:
+    if switching is None or switching.standing is not Standing.EXCEEDED:
+        return []
+    mode = switching.mode
+    return [f"check the conditions under `leave:` in the spec, and how late the log tells {mode}"]
