@@ -23,6 +23,7 @@ from verifier.report.wording import listed, percent
 ENOUGH: Final = 0.6
 """What is moved explains at least this share of the error beyond noise."""
 SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
+OWN: Final = (ParameterKind.CONSTANT, ParameterKind.CONTROL)
 LATE: Final = (CandidateKind.LATE_LOG, CandidateKind.CLOCK_OFFSET)
 OF_LOGS: Final = (CandidateKind.SIGN, CandidateKind.UNIT_SLIP)
 
@@ -41,6 +42,7 @@ def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
 def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
     bindings = {binding.name: binding for binding in program.bindings}
     moved = _in_order(diagnosis)
+    own_names = {each.name for each in moved if each.kind in OWN}
     of_rates = {each.name for each in moved if each.kind is ParameterKind.RATE_GAIN}
     found: list[AnyAim | str] = []
     by_hand: set[str] = set()
@@ -49,8 +51,10 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
     found += delays([each for each in taken if each.kind in LATE], bindings)
     for each in taken:
         if each.kind in OF_LOGS and not of_rates & set(each.applies_to):
-            found.append(mended(each, program, bindings))
+            found += mended(each, program, bindings)
             by_hand.update(each.applies_to)
+        elif each.kind is CandidateKind.GUARD and set(each.applies_to) & own_names:
+            continue  # it stands among the moved numbers
         elif each.kind not in SCALARS + OF_LOGS + LATE:
             found.append(each.sentence)
     names = dict.fromkeys(each.name for each in moved if each.kind in OF_INPUTS + OF_SENSORS)
@@ -118,8 +122,13 @@ def _left(diagnosis: Diagnosis) -> tuple[str, ...]:
     """What the moved numbers leave open."""
     left = [each.name for each in diagnosis.after if each.standing is Standing.EXCEEDED]
     said = [f"{listed(left)} would still depart"] if left else []
-    share = _share([each for each in diagnosis.candidates if each.is_taken])
-    if share < ENOUGH:
+    of_states = [
+        each
+        for each in diagnosis.candidates
+        if each.is_taken and each.kind is not CandidateKind.GUARD
+    ]
+    share = _share(of_states)
+    if of_states and share < ENOUGH:
         said.append(f"they explain {percent(max(share, 0.0))} of the error beyond noise only")
     return tuple(said)
 

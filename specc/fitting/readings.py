@@ -1,24 +1,17 @@
 """How a log is to be read, as numbers of `trace:` entries: delays, scales, offsets and units."""
 
 import math
-import re
 from collections.abc import Sequence
 from typing import Final
 
 from runtime.program import Binding, Program
-from spec_schema.faults import UnitFault
-from spec_schema.units import parse_unit
 from specc.fitting.aims import Aim, AnyAim, UnitAim
+from verifier.diagnosis.candidates.slips import slips_of
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.report.diagnosis import Candidate, CandidateKind, ParameterKind, Refitted
 
 OF_INPUTS: Final = (ParameterKind.INPUT_GAIN, ParameterKind.INPUT_OFFSET)
 OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
-WRITTEN: Final = {"degrees": "deg", "radians": "rad", "millimetres": "mm", "metres": "m"}
-"""Units by the word that a candidate's label begins with: what the log is in."""
-ANGLE_OR_LENGTH: Final = re.compile(r"\b(deg|rad|mm|m)\b")
-NEAR: Final = 0.1
-"""A factor within this share of that between two units is taken for it."""
 
 
 def delays(late: Sequence[Candidate], bindings: dict[str, Binding]) -> list[Aim | str]:
@@ -69,9 +62,16 @@ def affine(
     return found
 
 
-def mended(candidate: Candidate, program: Program, bindings: dict[str, Binding]) -> AnyAim | str:
-    """A wrong sign or unit in the log."""
-    (name,) = candidate.applies_to
+def mended(
+    candidate: Candidate, program: Program, bindings: dict[str, Binding]
+) -> list[AnyAim | str]:
+    """A wrong sign or unit in the log, of one variable or of several."""
+    return [_mended(name, candidate, program, bindings) for name in candidate.applies_to]
+
+
+def _mended(
+    name: str, candidate: Candidate, program: Program, bindings: dict[str, Binding]
+) -> AnyAim | str:
     if not _is_bound(name, bindings):
         return _unbound(candidate.sentence, name)
     binding = bindings[name]
@@ -79,17 +79,16 @@ def mended(candidate: Candidate, program: Program, bindings: dict[str, Binding])
         path = ("trace", name, "scale")
         scale = -binding.scale
         return Aim(path, f"scale of {name}", scale, 0.0, "1", 1.0, candidate.sentence)
-    own = parts_of(program)[name].unit
-    meant = WRITTEN.get(candidate.label.partition(" ")[0], "")
-    text = ANGLE_OR_LENGTH.sub(meant, own.text, count=1) if meant else ""
-    factor = candidate.numbers[0].value
-    try:
-        scale = parse_unit(text).scale
-    except UnitFault:
-        scale = 0.0
-    if abs(scale / (factor * binding.unit.scale) - 1.0) > NEAR:
-        return f"{candidate.sentence}; write the unit of the log into 'trace: {name}:' by hand"
-    return UnitAim(("trace", name, "unit"), f"unit of {name}", text, candidate.sentence)
+    slip = next((s for s in slips_of(binding.unit) if candidate.label.startswith(s.words)), None)
+    if slip is not None and slip.written:
+        path = ("trace", name, "unit")
+        return UnitAim(path, f"unit of {name}", slip.written, candidate.sentence)
+    if slip is not None and slip.factor == 1.0:
+        own = parts_of(program)[name].unit
+        offset = binding.offset + slip.offset
+        path, what = ("trace", name, "offset"), f"offset of {name}"
+        return Aim(path, what, offset, 0.0, own.text, own.scale, candidate.sentence)
+    return f"{candidate.sentence}; write the unit of the log into 'trace: {name}:' by hand"
 
 
 def _for_inputs(moved: dict[ParameterKind, Refitted]) -> tuple[float, float]:

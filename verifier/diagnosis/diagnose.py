@@ -16,6 +16,7 @@ from verifier.diagnosis.candidates.inputs import effects_on_inputs
 from verifier.diagnosis.candidates.rates import effects_on_rates
 from verifier.diagnosis.candidates.regions import effects_on_regions
 from verifier.diagnosis.conclusion import PARTLY, concluded, nothing_to_tell
+from verifier.diagnosis.guards import with_guards
 from verifier.diagnosis.parameters import effect_of, parameters_of
 from verifier.diagnosis.profiled import setting_of
 from verifier.diagnosis.refitting import refitted
@@ -26,6 +27,7 @@ from verifier.diagnosis.selection import CLEAR, Selection, select
 from verifier.fidelity.judging.evidence import evidence_of
 from verifier.fidelity.judging.judgement import results_of
 from verifier.fidelity.shooting.study import Study
+from verifier.fidelity.stretches.needs import needs_of
 from verifier.report.diagnosis import Diagnosis, Told
 from verifier.report.report import Report, Verdict
 from verifier.traces.trace import Trace
@@ -43,7 +45,16 @@ def diagnose(program: Program, trace: Trace, study: Study | None, report: Report
     ways of reading the trace are tried.
     """
     assert program.fidelity is not None, "what was judged has a fidelity"
-    fidelity = program.fidelity
+    found = _of_states(program, program.fidelity, trace, study, report)
+    if report.verdict is Verdict.PASS or study is None:
+        return found
+    return with_guards(found, program, needs_of(program, trace), program.fidelity)
+
+
+def _of_states(
+    program: Program, fidelity: Fidelity, trace: Trace, study: Study | None, report: Report
+) -> Diagnosis:
+    """Why states end elsewhere than predicted."""
     if study is None:
         return _of_unjudged(program, fidelity, trace, report)
     scene = scene_of(program, study)

@@ -53,7 +53,7 @@ def reread(
     scene: Scene | None,
     selection: Selection | None,
 ) -> tuple[Reread, ...]:
-    """The readings that could be judged, the one that fits best first.
+    """The readings that could be judged, the one that leads most first.
 
     scene, selection: of the trace as it was read.
     """
@@ -70,7 +70,7 @@ def reread(
             gain, share = _gain(other, fitted, scene, plain)
             lead = _gain(other, fitted, scene, final)[0]
             found.append(Reread(reading, needs, study, other, gain, lead, share))
-    return tuple(sorted(found, key=lambda each: -each.gain))
+    return tuple(sorted(found, key=lambda each: -each.lead))
 
 
 def _study(program: Program, fidelity: Fidelity, needs: Needs) -> Study | None:
@@ -86,18 +86,19 @@ def _gain(
 ) -> tuple[float, float]:
     """Log-likelihood gained, and the share explained, by `fitted` over `before`.
 
-    Per sample, as if both had as many.
+    Per sample, as if both had as many, and as independent ones as the better of the two leaves:
+    the residuals of a wrong one hang together, which would make light of how wrong it is.
     """
     counts = np.array([int(np.sum(each.used)) for each in other.observed])
-    thinning = correlation_time(other, fitted.left.residual)
-    still, after = _still(other), fitted.sigma
-    old, known = still, still
+    left = fitted.sigma / _still(other)
+    was, thinning = np.ones_like(left), correlation_time(other, fitted.left.residual)
     if scene is not None and before is not None:
         order = [[each.name for each in scene.observed].index(o.name) for o in other.observed]
-        old, known = before.sigma[order], _still(scene)[order]
-    gain = float(np.sum(counts / thinning * (np.log(old / known) - np.log(after / still))))
-    floor = np.array([each.floor for each in other.observed]) / still
-    left, was = after / still, old / known
+        was = (before.sigma / _still(scene))[order]
+        if np.sum(counts * np.log(was / left)) < 0.0:
+            thinning = correlation_time(scene, before.left.residual)[order]
+    gain = float(np.sum(counts / thinning * np.log(was / left)))
+    floor = np.array([each.floor for each in other.observed]) / _still(other)
     beyond = float(np.sum(np.maximum(was**2 - floor**2, 0.0) / left**2))
     share = float(np.sum((was**2 - left**2) / left**2)) / max(beyond, 1e-300)
     return gain, min(share, 1.0)

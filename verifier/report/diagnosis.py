@@ -53,8 +53,9 @@ class CandidateKind(StrEnum):
 
     DEAD_TIME: the robot answers to an input late. LATE_LOG: the log tells a series late (a
     `delay:` in `trace:` would mend it). CLOCK_OFFSET: all series of one topic, together. LAG: an
-    input acts through a first-order lag. PARAMETER: a number of the spec, alone. REGION: a rate is
-    off where some variable is beyond a border.
+    input acts through a first-order lag. PARAMETER: a number of the spec, alone. EXCHANGED_VALUES:
+    of a discrete variable. REGION: a rate is off where some variable is beyond a border. TERM: a
+    rate has a further term.
     """
 
     PARAMETER = "parameter"
@@ -69,7 +70,10 @@ class CandidateKind(StrEnum):
     SIGN = "sign"
     SWAPPED_AXES = "swapped axes"
     UNIT_SLIP = "unit slip"
+    EXCHANGED_VALUES = "exchanged values"
     REGION = "in one region"
+    TERM = "further term"
+    GUARD = "guard"
 
 
 @final

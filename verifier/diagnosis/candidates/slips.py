@@ -9,9 +9,16 @@ from spec_schema.dimension import Dimension
 from spec_schema.units import UnitFault, parse_unit
 
 WORDS: Final = {
-    **{"deg": "degrees", "rad": "radians"},
-    **{"mm": "millimetres", "cm": "centimetres", "m": "metres", "km": "kilometres"},
-    **{"%": "percent", "1": "shares", "ms": "milliseconds", "s": "seconds"},
+    "deg": "degrees",
+    "rad": "radians",
+    "mm": "millimetres",
+    "cm": "centimetres",
+    "m": "metres",
+    "km": "kilometres",
+    "%": "percent",
+    "1": "shares",
+    "ms": "milliseconds",
+    "s": "seconds",
 }
 """Units by how people say them; others are said as they are written."""
 ROOTS: Final = (("deg", "rad"), ("mm", "cm", "m", "km"))
@@ -106,10 +113,8 @@ def _of_roots(text: str, unit: Unit) -> list[Slip]:
 
 
 def _of_whole(text: str, unit: Unit, dimension: Dimension) -> list[Slip]:
-    if ANGULAR.search(text):
-        tried = TURNING
-    else:
-        tried = SHARES if text in SHARES else WHOLE
+    plain = SHARES if text in SHARES else WHOLE
+    tried: tuple[str, ...] = TURNING if ANGULAR.search(text) else plain
     return [
         _slip(other, text, parse_unit(other).scale / unit.scale, other)
         for other in tried
