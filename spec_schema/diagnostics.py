@@ -73,6 +73,10 @@ class SpecError(Exception):
         assert self.diagnostics, "what is refused without a word can't be mended"
         super().__init__(render(self.diagnostics))
 
+    def __reduce__(self) -> tuple[type["SpecError"], tuple[tuple[Diagnostic, ...]]]:
+        """So that it can be raised in another process."""
+        return type(self), (self.diagnostics,)
+
 
 def in_file_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Sorted by file, place and code, without repetitions."""

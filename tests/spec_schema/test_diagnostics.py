@@ -1,5 +1,7 @@
 """What a diagnostic looks like: the format that editors, CI and people read."""
 
+import pickle
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +11,7 @@ from spec_schema.diagnostics import (
     WIDEST,
     Diagnostic,
     Severity,
+    SpecError,
     first_ones,
     in_file_order,
     render,
@@ -25,6 +28,14 @@ def finding(text: str, span: Span | None, message: str = "wrong", label: str = "
 def excerpt(text: str, start: int, end: int) -> tuple[str, str]:
     line, carets = render_one(finding(text, Span(1, start, 1, end))).splitlines()[2:4]
     return line.removeprefix("1 | "), carets.removeprefix("  | ")
+
+
+def test_an_error_is_the_same_in_another_process() -> None:
+    error = SpecError([finding("kind: point\n", Span(1, 1, 1, 5))])
+
+    again = pickle.loads(pickle.dumps(error))  # noqa: S301 - bytes of our own
+
+    assert (again.diagnostics, str(again)) == (error.diagnostics, str(error))
 
 
 def test_the_format_is_that_of_the_style_guide() -> None:
