@@ -50,6 +50,7 @@ study: study-verify ## error rates, which departures the diagnosis names, refitt
 
 study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with planted departures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.verdicts
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.scores
 
 bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'

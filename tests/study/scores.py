@@ -1,9 +1,9 @@
 """Scores of similarity beside the verdict, on the same recordings: `python -m tests.study.scores`.
 
-Of each recording the score of its worst variable, over 100 recordings a row the median. Below, for
-each score, the best line that anybody could draw to tell robots that depart by twice their tolerance
-from those that do not depart, for all robots alike and for each robot its own: how many of these
-recordings are on the wrong side of it.
+Of each recording the score of its worst variable; of the 100 recordings of a row the median.
+Below, for each score, the best line that could be drawn between robots that do not depart and those
+that depart by twice their tolerance, for all robots alike and for each its own: how many of these
+recordings are on the wrong side of it. It is drawn with the truth at hand, which no lab has.
 """
 
 import argparse
@@ -33,9 +33,8 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=100)
     runs = parser.parse_args().runs
     found = {}
-    print(
-        f"{'robot':34s} {'departs':>8s} {'PASS':>6s} {'FAIL':>6s} {'open':>6s}", *SCORES, sep="  "
-    )
+    heading = f"{'robot':34s} {'departs':>8s} {'PASS':>6s} {'FAIL':>6s} {'open':>6s}"
+    print(heading, *(f"{name:>9s}" for name in SCORES), sep="  ")
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         for row in (Row(robot, departure) for robot in ROBOTS for departure in (0.0, 1.0, 2.0)):
             tasks = [pool.submit(scored, row, *planted_in(row), part) for part in chunks(runs)]
@@ -43,12 +42,12 @@ def main() -> None:
             scores = np.concatenate([task.result()[1] for task in tasks])
             found[row.robot.name, row.departure] = scores
             print(_told(row, counts, scores), flush=True)
-    print("on the wrong side of the best line between 0 and 2 T", *SCORES, sep="  ")
+    print("on the wrong side of the best line between 0 and 2 T")
     names = [robot.name for robot in ROBOTS]
     for words, chosen in (("all robots", names), *((name, [name]) for name in names)):
         sides = [np.concatenate([found[name, size] for name in chosen]) for size in (0.0, 2.0)]
         shares = 100.0 * wrong_side(*(BETTER * side for side in sides))
-        print(f"{words:52s}", *(f"{share:8.1f}%" for share in shares))
+        print(f"{words:65s}", "  ".join(f"{share:8.1f}%" for share in shares))
 
 
 def _told(row: Row, counts: Counter[str], scores: Array) -> str:
