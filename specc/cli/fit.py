@@ -47,7 +47,7 @@ def fit(
 
     Controls held constant, constants, delays, scales and offsets of `trace:`, and the vectors of
     `arrows` and `grid`. Nothing else in the file changes, and nothing without --write. Exit status
-    1: the structure differs, so that no numbers mend it; 4: the recordings can't tell.
+    1: the structure differs, or no number was found that mends it; 4: the recordings can't tell.
 
     **Examples**
 
@@ -74,7 +74,11 @@ def fit(
     if is_written:
         found.write()
     _show(found, form, is_written=is_written)
-    statuses = {Outcome.STRUCTURE_DIFFERS: Status.NO, Outcome.CANNOT_TELL: Status.INCONCLUSIVE}
+    statuses = {
+        Outcome.STRUCTURE_DIFFERS: Status.NO,
+        Outcome.NOTHING_MENDS_IT: Status.NO,
+        Outcome.CANNOT_TELL: Status.INCONCLUSIVE,
+    }
     return statuses.get(found.outcome, Status.YES)
 
 

@@ -53,7 +53,7 @@ def redrawn(loaded: Loaded, cases: tuple[Case, ...], logs: Logs, tell: Tell) -> 
         if not moves:
             break
         loaded, program = compiled(moved(loaded.source, moves))
-        cases = logs.judged(program, tell)
+        cases = logs.judged_again(cases, program, tell)
         shares = shares_of(loaded) or shares
         if all(case.report.verdict is Verdict.PASS for case in cases):
             break

@@ -124,22 +124,32 @@ def _ended(case: _Fit, logs: Logs, tell: Tell, *, anyway: bool) -> Fitted:
     if told.choices and not (anyway and case.moves):
         return case.ended(Outcome.CANNOT_TELL)
     if not case.moves:
-        return case.ended(Outcome.NOTHING_TO_MOVE)
+        return case.ended(_unmoved(case.cases))
     edited = moved(case.source, case.moves)
     _, program = compiled(edited)
-    after = tuple(each.report for each in logs.judged(program, tell))
-    left = tuple(dict.fromkeys(sentence for each in after for sentence in _departures(each)))
+    again = logs.judged_again(case.cases, program, tell)
+    after = tuple(each.report for each in again)
+    left = tuple(dict.fromkeys(sentence for each in again for sentence in _departures(each)))
     if left and not anyway:
         case = replace(case, told=replace(told, left=left))
         return case.ended(Outcome.STRUCTURE_DIFFERS, None, after)
     return case.ended(Outcome.MOVED, edited, after)
 
 
-def _departures(report: Report) -> tuple[str, ...]:
+def _unmoved(cases: tuple[Case, ...]) -> Outcome:
+    """What it means that no number would be moved."""
+    failed = any(case.report.verdict is Verdict.FAIL for case in cases)
+    return Outcome.NOTHING_MENDS_IT if failed else Outcome.NOTHING_TO_MOVE
+
+
+def _departures(case: Case) -> tuple[str, ...]:
     """What the robot still does otherwise than the edited spec."""
+    report, switching = case.report, case.switching
     found = [each.name for each in report.variables if each.standing is Standing.EXCEEDED]
-    said = f"{listed(found)} would still depart on {report.trace.source}" if found else ""
-    return (said,) if said else ()
+    said = [f"{listed(found)} would still depart on {report.trace.source}"] if found else []
+    if switching is not None and switching.standing is Standing.EXCEEDED:
+        said.append(f"{switching.mode} would still change otherwise on {report.trace.source}")
+    return tuple(said)
 
 
 def _in_silence(_phase: str) -> None:

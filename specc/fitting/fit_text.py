@@ -5,13 +5,14 @@ from typing import Final
 from specc.fitting.fitted import Fitted, Outcome
 from specc.fitting.moves import Move
 from verifier.report.layout import section, table, wrapped
-from verifier.report.report import Report
+from verifier.report.report import Report, Verdict
 
 MOST: Final = 12
 """So many moves are listed; the diff shows all."""
 OPENINGS: Final = {
     Outcome.MOVED: "moved",
     Outcome.NOTHING_TO_MOVE: "nothing is to be moved",
+    Outcome.NOTHING_MENDS_IT: "nothing is edited: no number of the spec mends it",
     Outcome.STRUCTURE_DIFFERS: "nothing is edited: the structure differs",
     Outcome.CANNOT_TELL: "nothing is edited: the recordings can't tell what to move",
 }
@@ -93,6 +94,9 @@ def _moves(moves: tuple[Move, ...]) -> list[tuple[str, ...]]:
 def _reasons(fitted: Fitted) -> tuple[str, ...]:
     if fitted.outcome is Outcome.NOTHING_TO_MOVE:
         return ("the recordings show no difference that a number of the spec would mend",)
+    if fitted.outcome is Outcome.NOTHING_MENDS_IT:
+        failed = [report for report in fitted.before if report.verdict is Verdict.FAIL]
+        return tuple(f"{report.trace.source}: {report.reasons[0]}" for report in failed)
     said = dict.fromkeys(move.sentence for move in fitted.moves)
     return (*said, *fitted.choices)
 

@@ -17,10 +17,14 @@ BOM = b"\xef\xbb\xbf"
 
 @final
 class Outcome(StrEnum):
-    """How a fit ended. Only MOVED has another text than before."""
+    """How a fit ended. Only MOVED has another text than before.
+
+    NOTHING_MENDS_IT: a recording fails, and no number of the spec was found that explains it.
+    """
 
     MOVED = "moved"
     NOTHING_TO_MOVE = "nothing to move"
+    NOTHING_MENDS_IT = "nothing mends it"
     STRUCTURE_DIFFERS = "the structure differs"
     CANNOT_TELL = "cannot tell"
 

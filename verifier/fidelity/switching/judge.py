@@ -10,7 +10,7 @@ from verifier.fidelity.switching.jumps import jumps_of
 from verifier.fidelity.switching.means import Mean, standings_of
 from verifier.fidelity.switching.setting import Setting, setting_of
 from verifier.fidelity.switching.sorting import missed_switches, sorted_switches
-from verifier.fidelity.switching.stays import stays_of
+from verifier.fidelity.switching.stays import Stay, stays_of
 from verifier.fidelity.switching.told import needs_told
 from verifier.fidelity.switching.ways import Compared, WayMeans, means_of
 from verifier.report.report import Standing
@@ -37,17 +37,28 @@ def switching_of(
         untold = Switching(program.field.mode, (), (), Standing.UNDECIDED, (reason,), (advice,))
         return untold, needs
     setting = setting_of(program, needs, fidelity)
+    judgement, compared = judged_changes(setting)
+    return judgement, needs if compared is None else needs_told(
+        program, needs, setting, compared.jumps
+    )
+
+
+def judged_changes(setting: Setting) -> tuple[Switching, Compared | None]:
+    """The judgement, and what it rests on; None where the mode never changes."""
     stays = stays_of(setting)
     missed = tuple(missed_switches(setting, stays))
     if len(setting.changes) == 0:
-        return _switching(setting, _ways(setting, (), missed), missed), needs
+        return _switching(setting, _ways(setting, (), missed), missed), None
+    compared = _compared(setting, stays)
+    every = tuple(sorted((*compared.switches, *missed), key=lambda each: each.time))
+    return _switching(setting, _ways(setting, means_of(compared), every), every), compared
+
+
+def _compared(setting: Setting, stays: tuple[Stay, ...]) -> Compared:
+    """All changes beside the model."""
     arrivals = arrivals_of(setting, stays)
     jumps = jumps_of(setting, stays, arrivals.guards)
-    switches = sorted_switches(setting, stays, arrivals, jumps)
-    means = means_of(Compared(setting, arrivals, jumps, switches))
-    every = tuple(sorted((*switches, *missed), key=lambda each: each.time))
-    judgement = _switching(setting, _ways(setting, means, every), every)
-    return judgement, needs_told(program, needs, setting, jumps)
+    return Compared(setting, arrivals, jumps, sorted_switches(setting, stays, arrivals, jumps))
 
 
 def _ways(

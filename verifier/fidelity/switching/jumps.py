@@ -28,11 +28,13 @@ INSTANT = 1e-4
 class Jumps:
     """The changes (K,), as far as `is_good` (K,) says; errors are measured minus predicted.
 
+    before: what is known of the states just before them, fitted to their own side only.
     error, variance, is_reset (K, D). shift (K,): by how much the change came after the middle of
     its doubt, and `shift_variance` (K,) of that. slope (K, D): by how much the state after the
     change were elsewhere, had it come a second later.
     """
 
+    before: "Before"
     is_good: Booleans
     error: Array
     variance: Array
@@ -40,6 +42,20 @@ class Jumps:
     shift: Array
     shift_variance: Array
     slope: Array
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Before:
+    """The states (1 + D, K, n) at the knots `at` (K,): as fitted, and from nudged starts.
+
+    nudge (K, D), covariance (K, D, D): of the starts.
+    """
+
+    states: Array
+    nudge: Array
+    covariance: Array
+    at: Integers
 
 
 def jumps_of(setting: Setting, stays: tuple[Stay, ...], guards: Integers) -> Jumps:
@@ -64,6 +80,7 @@ def jumps_of(setting: Setting, stays: tuple[Stay, ...], guards: Integers) -> Jum
     good = before.is_good & after.is_good & (guards >= 0) & np.all(np.isfinite(error), axis=1)
     shift, doubt = _shifts(changes.doubt, (error, covariance, slope), is_reset)
     return Jumps(
+        before=Before(fitted_before, nudge, before.covariance, at),
         is_good=good,
         error=error + slope * shift[:, None],
         variance=np.einsum("kii->ki", covariance) + slope**2 * doubt[:, None],
@@ -126,13 +143,14 @@ def _slope(
     at, left = where[0], setting.changes.left.astype(np.float64)
     inputs = inputs_at(setting, np.maximum(at - 1, 0)[:, None], left)[:, 0]
     little = INSTANT * setting.lead
-    later = before + little * _rates(setting, before, inputs)
+    later = before + little * rates_at(setting, before, inputs)
     carried = (_after_jump(setting, later[None], left, where)[0] - predicted) / little
     entered = inputs_at(setting, at[:, None], setting.changes.entered.astype(np.float64))[:, 0]
-    return np.asarray((_rates(setting, after, entered) - carried)[:, setting.columns])
+    return np.asarray((rates_at(setting, after, entered) - carried)[:, setting.columns])
 
 
-def _rates(setting: Setting, states: Array, inputs: Array) -> Array:
+def rates_at(setting: Setting, states: Array, inputs: Array) -> Array:
+    """The rates (K, n) in states (K, n) under inputs (K, k)."""
     program = setting.program
     register = register_under(setting.flow, states, inputs, setting.model.grid.columns)
     n, p = len(program.states), len(program.controls)

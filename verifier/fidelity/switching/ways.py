@@ -55,7 +55,7 @@ def _means(compared: Compared, guard: int) -> WayMeans:
         for name in ("late", "allowed", "doubt")
     )
     timed = np.isfinite(late) & np.isfinite(allowed) & (allowed > 0.0)
-    bias = _bias(compared, taken[timed], guard)
+    bias = bias_of(compared, taken[timed], guard)
     if _is_crowded(compared, guard, int(np.sum(timed))):
         return WayMeans(guard, None, "", 0.0, ())
     mean = None
@@ -98,7 +98,7 @@ def _jumps(compared: Compared, able: Integers, bias: float) -> list[tuple[int, M
     return found
 
 
-def _bias(compared: Compared, taken: Integers, guard: int) -> float:
+def bias_of(compared: Compared, taken: Integers, guard: int) -> float:
     """What the stamps of the mode may do to a mean, however many switches it is of.
 
     The doubt of a stamp averages out where switches fall anywhere between two of them. The
