@@ -21,7 +21,7 @@ from verifier.traces.files.bag1_records import (
 )
 from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.streams import Gathering
-from verifier.traces.files.unpacking import UnpackError, unpack, unpack_torn
+from verifier.traces.files.unpacking import UnpackError, check_packed, unpack, unpack_torn
 from verifier.traces.messages.channel import Channel
 
 MAGIC = b"#ROSBAG V2.0\n"
@@ -92,11 +92,12 @@ def _read_chunk(data: Bytes, chunk: Record, gathering: Gathering[int]) -> None:
     compression = chunk.header.get(b"compression", b"none").decode(errors="replace")
     compression = "" if compression == "none" else compression
     claimed = number(chunk.header.get(b"size", b""))
-    body = data[chunk.begin : chunk.end]
-    torn = len(body) < chunk.end - chunk.begin
+    torn = chunk.end > len(data)
     place = f"at byte {chunk.begin}"
     before = gathering.count
     try:
+        check_packed(min(chunk.end, len(data)) - chunk.begin)
+        body = data[chunk.begin : chunk.end]
         inside, fault = _unpacked(compression, body, claimed, torn=torn)
     except UnpackError as error:
         gathering.lose("corrupt chunk", f"{place}: {error}")

@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import TypeAlias
 from urllib.parse import quote
 
-import zstandard
-
 from verifier.traces.files.log import MessageLog, Progress, Wanted
 from verifier.traces.files.sqlite_pages import (
     MOST_READINGS,
@@ -18,7 +16,7 @@ from verifier.traces.files.sqlite_pages import (
     pages_claimed,
 )
 from verifier.traces.files.streams import Gathering
-from verifier.traces.files.unpacking import LARGEST
+from verifier.traces.files.unpacking import MOST_TIMES, UnpackError, unpack_zstd
 from verifier.traces.messages.channel import Channel
 
 Definitions: TypeAlias = dict[str, tuple[str, bytes]]
@@ -121,23 +119,15 @@ def _add(gathering: Gathering[int], topic: Value, log_time: Value, payload: Valu
             gathering.lose("impossible log time", "before the year 1970")
             return
         if payload.startswith(_ZSTD):
-            unpacked = _unpacked(payload)
-            if unpacked is None:
-                gathering.lose("corrupt record", "a compressed message can't be unpacked")
+            try:
+                payload = unpack_zstd(payload)
+            except UnpackError:
+                detail = f"a message that can't be unpacked, or to over {MOST_TIMES} times its size"
+                gathering.lose("corrupt record", detail)
                 return
-            payload = unpacked
         gathering.add(topic, log_time, payload, 0, len(payload))
     else:
         gathering.lose("corrupt record", "a row of messages with values of other types")
-
-
-def _unpacked(payload: bytes) -> bytes | None:
-    try:
-        if zstandard.frame_content_size(payload) > LARGEST:
-            return None
-        return zstandard.ZstdDecompressor().decompress(payload, max_output_size=LARGEST)
-    except (zstandard.ZstdError, MemoryError):
-        return None
 
 
 def _salvage(path: Path, gathering: Gathering[int], tell: Progress) -> None:

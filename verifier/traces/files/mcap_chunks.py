@@ -8,15 +8,19 @@ from mcap.records import Channel, Schema
 from verifier.traces.files.mcap_reading import Reading
 from verifier.traces.files.mcap_records import HEAD, MESSAGE, Bytes, ChunkHead, parse
 from verifier.traces.files.streams import Run
-from verifier.traces.files.unpacking import UnpackError, unpack, unpack_torn
+from verifier.traces.files.unpacking import UnpackError, check_packed, unpack, unpack_torn
+
+_MOST_UNTAKEN = 1 << 24
+"""Bytes of messages that are copied out of a chunk before they are handed on."""
 
 
 def read_chunk(data: Bytes, head: ChunkHead, reading: Reading) -> None:
     """The messages of one chunk; of a torn one, those before the tear."""
     reading.chunked = True
-    body = bytes(data[head.begin : head.end])
-    torn = len(body) < head.end - head.begin
+    torn = head.end > len(data)
     try:
+        check_packed(min(head.end, len(data)) - head.begin)
+        body = bytes(data[head.begin : head.end])
         unpacked = (unpack_torn if torn else unpack)(head.compression, body, head.size)
     except UnpackError as error:
         reading.gathering.lose("corrupt chunk", f"at byte {head.begin}: {error}")
@@ -52,12 +56,16 @@ def _walk(inside: bytes, place: int, reading: Reading, *, sure: bool) -> int:
     head, message = HEAD.unpack_from, MESSAGE.unpack_from
     gathering = reading.gathering
     runs: dict[int, Run] = {}
+    taken = 0
     while position + 9 <= size:
         opcode, length = head(inside, position)
         begin = position + 9
         end = begin + length
-        if end > size:
+        if end > size or opcode == 0:
             break
+        if begin - taken > _MOST_UNTAKEN:
+            gathering.take(runs)
+            runs, taken = {}, position
         if opcode == 5 and length >= 22:
             channel, _, log_time, _ = message(inside, begin)
             run = runs.get(channel)

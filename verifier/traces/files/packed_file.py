@@ -14,8 +14,14 @@ import zstandard
 from spec_schema.diagnostics import SpecError
 from verifier.traces.faults import file_fault
 
-LARGEST = 1 << 37
-"""Bytes. What unpacks to more is taken for a trap."""
+LARGEST: Final = 1 << 37
+"""Bytes. What unpacks to more is taken for a trap, ..."""
+
+MOST_TIMES: Final = 1000
+"""... and what unpacks to more than so many times its size, ..."""
+
+BELIEVED: Final = 1 << 28
+"""... but not below so many bytes."""
 
 KEPT_FREE: Final = 0.1
 """Share of a disk's free bytes that is left to others."""
@@ -23,7 +29,9 @@ KEPT_FREE: Final = 0.1
 ELSEWHERE: Final = "set TMPDIR to a folder on a larger disk, or unpack the log yourself"
 
 _PIECE = 1 << 20
-_FAULTS = (OSError, EOFError, lzma.LZMAError, zstandard.ZstdError, RuntimeError, ValueError)
+_FAULTS = (
+    OSError, EOFError, MemoryError, RuntimeError, ValueError, lzma.LZMAError, zstandard.ZstdError,
+)  # fmt: skip
 
 
 class _Readable(Protocol):
@@ -64,7 +72,8 @@ def unpack_file(path: Path, target: Path) -> str:
         magic = next(magic for magic in _OPENERS if head.startswith(magic))
         file.seek(0)
         pieces = _Pieces(_OPENERS[magic](file))
-        room = min(LARGEST, _room(target.parent))
+        most = min(LARGEST, max(BELIEVED, MOST_TIMES * path.stat().st_size))
+        room = min(most, _room(target.parent))
         done = 0
         try:
             with target.open("wb") as out:
@@ -77,9 +86,9 @@ def unpack_file(path: Path, target: Path) -> str:
             raise _no_room(path, target.parent, done, reason(error)) from error
     if done <= room:
         return pieces.fault
-    if room < LARGEST:
+    if room < most:
         raise _no_room(path, target.parent, room, "more is not free there")
-    return f"it unpacks to more than {LARGEST} bytes"
+    return f"it unpacks to more than {most} bytes, as a trap does; the rest is left"
 
 
 @final

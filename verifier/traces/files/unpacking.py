@@ -3,13 +3,19 @@
 import bz2
 import io
 from collections.abc import Callable
-from typing import Protocol, TypeAlias
+from typing import Final, Protocol, TypeAlias, final
 
 import lz4.frame
 import zstandard
 
-LARGEST = 1 << 31
-"""Bytes. What claims to unpack to more is not believed."""
+LARGEST: Final = 1 << 29
+"""Bytes. Blocks that are larger, packed or not, are not read: recorders make them of a few MB."""
+
+MOST_TIMES: Final = 1000
+"""What unpacks to more than so many times its size is taken for a trap, ..."""
+
+BELIEVED: Final = 1 << 26
+"""... but not below so many bytes: camera images may be black for hours."""
 
 PIECE = 1 << 14
 _ZSTD_PIECE = 1 << 17
@@ -18,31 +24,73 @@ _FAULTS = (zstandard.ZstdError, RuntimeError, OSError, EOFError, ValueError, Mem
 Unpack: TypeAlias = Callable[[bytes, int], bytes]
 
 
+@final
 class UnpackError(Exception):
     """A block that can't be unpacked; the message says why."""
 
 
 class _Decompressor(Protocol):
+    @property
+    def needs_input(self) -> bool: ...
+
     def decompress(self, data: bytes, max_length: int) -> bytes: ...
+
+
+def most_unpacked(packed: int) -> int:
+    """Bytes that `packed` ones may unpack to."""
+    return min(LARGEST, max(BELIEVED, MOST_TIMES * packed))
+
+
+def check_packed(size: int) -> None:
+    """Refuses a block that is too large to be copied out of a file; raises UnpackError."""
+    if size > LARGEST:
+        raise UnpackError(f"it is {size} bytes long, blocks of up to {LARGEST} are read")
 
 
 def unpack(compression: str, data: bytes, size: int) -> bytes:
     """The block's `size` bytes, or fewer or other ones where it is damaged; raises UnpackError."""
-    if size > LARGEST:
-        raise UnpackError(f"it claims {size} bytes")
-    if not compression:
-        return data
-    try:
-        return _kind(compression, _WHOLE)(data, size)
-    except _FAULTS as error:
-        raise UnpackError(str(error)) from error
+    return _bounded(_WHOLE, compression, data, size)
 
 
 def unpack_torn(compression: str, data: bytes, size: int) -> bytes:
     """What can be had of a block that was cut or damaged, from its start; raises UnpackError."""
-    if size > LARGEST:
-        raise UnpackError(f"it claims {size} bytes")
-    return _kind(compression, _TORN)(data, size) if compression else data
+    return _bounded(_TORN, compression, data, size)
+
+
+def unpack_zstd(data: bytes) -> bytes:
+    """A zstd frame that says its size itself, or doesn't; raises UnpackError."""
+    most = most_unpacked(len(data))
+    try:
+        size = zstandard.frame_content_size(data)
+        if size > most:
+            raise UnpackError(_trap(len(data)))
+        if size >= 0:
+            return zstandard.ZstdDecompressor().decompress(data)
+        with zstandard.ZstdDecompressor().stream_reader(io.BytesIO(data)) as reader:
+            unpacked = reader.read(most + 1)
+    except _FAULTS as error:
+        raise UnpackError(str(error)) from error
+    if len(unpacked) > most:
+        raise UnpackError(_trap(len(data)))
+    return unpacked
+
+
+def _trap(packed: int) -> str:
+    return f"its {packed} bytes unpack to more than {most_unpacked(packed)}, as a trap does"
+
+
+def _bounded(known: dict[str, Unpack], compression: str, data: bytes, size: int) -> bytes:
+    """No more than may be; a claim of more is damage where there is less, and else a trap."""
+    if not compression:
+        return data
+    most = most_unpacked(len(data))
+    try:
+        unpacked = _kind(compression, known)(data, min(size, most))
+    except _FAULTS as error:
+        raise UnpackError(str(error)) from error
+    if size > most and len(unpacked) >= most:
+        raise UnpackError(_trap(len(data)))
+    return unpacked
 
 
 def _kind(compression: str, known: dict[str, Unpack]) -> Unpack:
@@ -53,7 +101,10 @@ def _kind(compression: str, known: dict[str, Unpack]) -> Unpack:
 
 def _zstd(data: bytes, size: int) -> bytes:
     # The size that stands in the frame is not believed either: it decides what is allocated.
-    if zstandard.frame_content_size(data) not in {-1, size}:
+    found = zstandard.frame_content_size(data)
+    if found > most_unpacked(len(data)):
+        raise UnpackError(_trap(len(data)))
+    if found not in {-1, size}:
         raise UnpackError(f"its frame does not hold the {size} bytes that are claimed")
     return zstandard.ZstdDecompressor().decompress(data, max_output_size=max(size, 1))
 
@@ -84,15 +135,16 @@ def _torn_zstd(data: bytes, size: int) -> bytes:
 def _piecewise(decompressor: _Decompressor, data: bytes, size: int) -> bytes:
     """Fed in pieces, so that what stands before the damage has come out when it is met."""
     parts: list[bytes] = []
-    for begin in range(0, len(data), PIECE):
+    begin = 0
+    while size > 0 and begin < len(data):
+        piece = data[begin : begin + PIECE] if decompressor.needs_input else b""
+        begin += len(piece)
         try:
-            part = bytes(decompressor.decompress(data[begin : begin + PIECE], max_length=-1))
+            part = bytes(decompressor.decompress(piece, max_length=size))
         except _FAULTS:
             break
         parts.append(part)
         size -= len(part)
-        if size <= 0:
-            break
     return b"".join(parts)
 
 
