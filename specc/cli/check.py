@@ -1,9 +1,8 @@
 """`specc check`: every mistake at once, and on demand every claim."""
 
 from collections.abc import Iterator, Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, final
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +14,7 @@ from specc.cli.console import (
     show_diagnostics,
     shown_bar,
 )
+from specc.cli.options import ReportFormat, ReportFormatOption
 from specc.cli.status import Status
 from specc.cli.warming import warmed
 
@@ -23,26 +23,13 @@ if TYPE_CHECKING:
     from verifier.topology.claims.findings import Finding
 
 
-@final
-class CheckFormat(StrEnum):
-    """How the diagnostics are printed."""
-
-    TEXT = "text"
-    JSON = "json"
-    GITHUB = "github"
-
-
 def check(
-    paths: Annotated[
-        list[Path], typer.Argument(help="Specs, or folders of them.", metavar="SPEC...")
-    ],
+    paths: Annotated[list[Path], typer.Argument(help="Specs, or folders of them.", metavar="SPEC")],
     claims: Annotated[
         bool,
         typer.Option("--claims", help="Compile the specs, and prove or refute their `expect:`."),
     ] = False,
-    form: Annotated[
-        CheckFormat, typer.Option("--format", "-f", help="text, json, or github annotations.")
-    ] = CheckFormat.TEXT,
+    form: ReportFormatOption = ReportFormat.TEXT,
 ) -> int:
     """Find every mistake in specs, each with its place and what to write instead.
 
@@ -69,12 +56,12 @@ def check(
         show_diagnostics(found)
         return _check_claims(files, form, [d.as_json() for d in found])
     match form:
-        case CheckFormat.JSON:
+        case ReportFormat.JSON:
             mistakes = [d.as_json() for d in found]
             print_json({"mistakes": mistakes, "claims": []} if claims else mistakes)
-        case CheckFormat.GITHUB:
+        case ReportFormat.GITHUB:
             print_annotations(found)
-        case CheckFormat.TEXT:
+        case ReportFormat.TEXT:
             show_diagnostics(found)
             if not failed:
                 say(f"{_specs(len(files))} without mistakes", "bold green")
@@ -82,7 +69,7 @@ def check(
 
 
 def _check_claims(
-    files: Sequence[Path], form: CheckFormat, mistakes: list[dict[str, object]]
+    files: Sequence[Path], form: ReportFormat, mistakes: list[dict[str, object]]
 ) -> int:
     """Put the claims of sound specs to the judge: 1 where one is refuted, 4 where one is open.
 
@@ -98,10 +85,10 @@ def _check_claims(
             found.append((program, finding))
     except KeyboardInterrupt:
         interrupted = True
-    if form is CheckFormat.JSON:
+    if form is ReportFormat.JSON:
         records = [finding_record(program, finding) for program, finding in found]
         print_json({"mistakes": mistakes, "claims": records})
-    if found if interrupted else form is not CheckFormat.JSON:
+    if found if interrupted else form is not ReportFormat.JSON:
         say(totals_text([finding for _, finding in found]), "bold")
     if interrupted:
         say(f"interrupted; {_unjudged(files, found)} not judged", "bold yellow")
@@ -112,7 +99,7 @@ def _check_claims(
     return Status.INCONCLUSIVE if "undecided" in rulings else Status.YES
 
 
-def _judged(files: Sequence[Path], form: CheckFormat) -> "Iterator[tuple[Program, Finding]]":
+def _judged(files: Sequence[Path], form: ReportFormat) -> "Iterator[tuple[Program, Finding]]":
     """The claims of all specs, each printed for people once it is decided."""
     from specc.loading import load_program
     from verifier.topology.claims.judge import judged
@@ -154,14 +141,14 @@ def _unjudged(files: Sequence[Path], found: "Sequence[tuple[Program, Finding]]")
     return f"{left} claim was" if left == 1 else f"{left} claims were"
 
 
-def _print_claim(program: "Program", finding: "Finding", form: CheckFormat) -> None:
+def _print_claim(program: "Program", finding: "Finding", form: ReportFormat) -> None:
     from specc.claims_text import STYLES, finding_text
     from verifier.report.annotations import annotation
 
-    if form is CheckFormat.TEXT:
+    if form is ReportFormat.TEXT:
         text = finding_text(program, finding)
         print_styled(text, f": {finding.ruling}: ", STYLES[finding.ruling])
-    elif form is CheckFormat.GITHUB and not finding.ruling.holds:
+    elif form is ReportFormat.GITHUB and not finding.ruling.holds:
         text = finding_text(program, finding)
         severity = "error" if finding.ruling == "refuted" else "warning"
         typer.echo(annotation(severity, finding.claim.origin, str(finding.ruling), text))

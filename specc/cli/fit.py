@@ -1,14 +1,12 @@
 """`specc fit`: the spec moved to what the robot does."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from specc.cli.console import print_json, print_text, say, shown_bar
-from specc.cli.options import Format, FormatOption
+from specc.cli.options import Clock, ClockOption, Format, FormatOption, JudgedBy, Logs, Strict
 from specc.cli.status import Status
-from specc.cli.verify import Clock
 from specc.cli.warming import warmed
 
 if TYPE_CHECKING:
@@ -16,16 +14,8 @@ if TYPE_CHECKING:
 
 
 def fit(
-    traces: Annotated[
-        list[Path],
-        typer.Argument(help="Logs: .mcap, ROS 1 .bag, ROS 2 bag, .csv.", metavar="TRACE..."),
-    ],
-    spec: Annotated[
-        Path | None,
-        typer.Option(
-            "--spec", help="The spec (.yaml) to fit; default: as `specc verify` finds it."
-        ),
-    ] = None,
+    traces: Logs,
+    spec: JudgedBy = None,
     write: Annotated[
         bool, typer.Option("--write", help="Edit the spec's file; without it, only show the edit.")
     ] = False,
@@ -35,12 +25,8 @@ def fit(
             "--anyway", help="Move numbers even where the structure differs, or nothing decides."
         ),
     ] = False,
-    clock: Annotated[
-        Clock, typer.Option("--clock", help="Sensor stamps, log times, or the better of both.")
-    ] = Clock.AUTO,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Any loss in a log (torn, corrupt) is an error.")
-    ] = False,
+    clock: ClockOption = Clock.AUTO,
+    strict: Strict = False,
     form: FormatOption = Format.TEXT,
 ) -> int:
     """Move the spec's numbers to what the robot does, and show the edit and the new verdict.
@@ -77,6 +63,7 @@ def fit(
     statuses = {
         Outcome.STRUCTURE_DIFFERS: Status.NO,
         Outcome.NOTHING_MENDS_IT: Status.NO,
+        Outcome.BY_HAND: Status.NO,
         Outcome.CANNOT_TELL: Status.INCONCLUSIVE,
     }
     return statuses.get(found.outcome, Status.YES)

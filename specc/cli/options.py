@@ -15,11 +15,67 @@ class Format(StrEnum):
     JSON = "json"
 
 
+@final
+class ReportFormat(StrEnum):
+    """How mistakes and verdicts are printed on standard output."""
+
+    TEXT = "text"
+    JSON = "json"
+    GITHUB = "github"
+
+
+@final
+class Clock(StrEnum):
+    """Which stamps count as the time of a message."""
+
+    AUTO = "auto"
+    SENSOR = "sensor"
+    LOG = "log"
+
+
 SpecPath: TypeAlias = Annotated[
     Path, typer.Argument(help="A behavior spec (.yaml) or a compiled one (.specc).", metavar="SPEC")
 ]
 FormatOption: TypeAlias = Annotated[
     Format, typer.Option("--format", "-f", help="Print for people (text) or for programs (json).")
+]
+ReportFormatOption: TypeAlias = Annotated[
+    ReportFormat,
+    typer.Option(
+        "--format",
+        "-f",
+        help="Print for people (text), for programs (json), or as annotations (github).",
+    ),
+]
+Logs: TypeAlias = Annotated[
+    list[Path],
+    typer.Argument(
+        help="Logs: .mcap, ROS 1 .bag, ROS 2 bag (folder or .db3), .ulg, .csv.", metavar="TRACE"
+    ),
+]
+JudgedBy: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--spec",
+        metavar="SPEC",
+        help="The spec (.yaml or .specc); default: what is attached to the log, else what "
+        "`specc.yaml` says.",
+    ),
+]
+Reports: TypeAlias = Annotated[
+    list[Path],
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="FILE",
+        help="Also write a report: .html, .json, .txt, .xml (JUnit) or .sarif. Repeatable.",
+    ),
+]
+ClockOption: TypeAlias = Annotated[
+    Clock, typer.Option("--clock", help="Sensor stamps, log times, or the better of both.")
+]
+Strict: TypeAlias = Annotated[
+    bool, typer.Option("--strict", help="Any loss in a log (torn, corrupt) is an error.")
 ]
 Settings: TypeAlias = Annotated[
     list[str],

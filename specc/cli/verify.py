@@ -1,13 +1,22 @@
 """`specc verify`: does the robot do what the spec says?"""
 
 from collections.abc import Sequence
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, final
 
 import typer
 
 from specc.cli.console import print_json, print_text, say, shown_bar
+from specc.cli.options import (
+    Clock,
+    ClockOption,
+    JudgedBy,
+    Logs,
+    ReportFormat,
+    ReportFormatOption,
+    Reports,
+    Strict,
+)
 from specc.cli.status import Status
 from specc.cli.warming import warmed
 
@@ -21,62 +30,16 @@ PIECES: Final = 1000
 """Of which the bar shows each recording."""
 
 
-@final
-class Clock(StrEnum):
-    """Which stamps count as the time of a message."""
-
-    AUTO = "auto"
-    SENSOR = "sensor"
-    LOG = "log"
-
-
-@final
-class ReportFormat(StrEnum):
-    """How a verdict is printed on standard output."""
-
-    TEXT = "text"
-    JSON = "json"
-    GITHUB = "github"
-
-
 def verify(
-    traces: Annotated[
-        list[Path],
-        typer.Argument(help="Logs: .mcap, ROS 1 .bag, ROS 2 bag, .csv.", metavar="TRACE..."),
-    ],
-    spec: Annotated[
-        Path | None,
-        typer.Option(
-            "--spec",
-            help="The spec (.yaml or .specc); default: what is attached to the log, else what "
-            "`specc.yaml` says.",
-        ),
-    ] = None,
-    output: Annotated[
-        list[Path],
-        typer.Option(
-            "--output",
-            "-o",
-            help="Also write a report: .html, .json, .txt, .xml (JUnit) or .sarif. Repeatable.",
-        ),
-    ] = [],  # noqa: B006  typer copies it
-    clock: Annotated[
-        Clock, typer.Option("--clock", help="Sensor stamps, log times, or the better of both.")
-    ] = Clock.AUTO,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Any loss in the log (torn, corrupt) is an error.")
-    ] = False,
+    traces: Logs,
+    spec: JudgedBy = None,
+    output: Reports = [],  # noqa: B006  typer copies it
+    clock: ClockOption = Clock.AUTO,
+    strict: Strict = False,
     quick: Annotated[
         bool, typer.Option("--quick", help="The verdict only, without what explains it.")
     ] = False,
-    form: Annotated[
-        ReportFormat,
-        typer.Option(
-            "--format",
-            "-f",
-            help="Print for people (text), for programs (json), or as annotations (github).",
-        ),
-    ] = ReportFormat.TEXT,
+    form: ReportFormatOption = ReportFormat.TEXT,
 ) -> int:
     """Judge recordings of a robot against its spec: PASS, FAIL or INCONCLUSIVE, and why.
 
