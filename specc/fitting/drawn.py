@@ -66,9 +66,10 @@ def _aims(shares: Shares, cases: tuple[Case, ...]) -> tuple[tuple[Aim, ...], Boo
     is_told: Booleans = np.zeros(shares.values.shape, dtype=bool)
     told = []
     for case in cases:
-        if case.study is None:
+        _, study = case.judged()
+        if study is None:
             continue
-        found = fitted_vectors(case.program, case.study, drawn, case.report.confidence)
+        found = fitted_vectors(case.program, study, drawn, case.report.confidence)
         is_told |= found.is_told
         aims = [
             _aim(shares, case.program, place, float(found.values[place]), float(found.half[place]))

@@ -99,7 +99,8 @@ class _Fit:
 
 def _aims(case: Case, tell: Tell) -> Aims:
     tell(f"{case.report.trace.source}, why it departs")
-    diagnosis = diagnose(case.program, case.trace, case.study, case.report)
+    trace, study = case.judged()
+    diagnosis = diagnose(case.program, trace, study, case.report)
     return aims_of(case.program, diagnosis)
 
 
