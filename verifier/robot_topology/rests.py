@@ -1,8 +1,10 @@
 """Where the robot comes to rest.
 
-It rests while the means of two successive spans, each as long as the field needs to settle, differ
-by no more than noise and half the tolerance allow; a rest lasts until it leaves, or the stretch
-ends. A saddle that is only passed slowly is left again, so a rest that ends early does not count.
+It rests where it stays: the means of two successive spans, each as long as the field needs to
+settle, differ by no more than noise and half the tolerance allow, and so do those of the three
+thirds of the rest. What moves slowly, as at the turning point of a slow swing, drifts away from
+one third to the next. A rest lasts until the stretch ends, or until the robot is pushed away; a
+saddle that is only passed, or a place that is left as slowly as it was reached, is no rest.
 """
 
 from dataclasses import dataclass
@@ -26,10 +28,14 @@ SHARE: Final = 0.5
 """Of the tolerance, that the means may differ by."""
 SMALL: Final = 0.005
 """Of the domain: stands for the tolerance where none is declared."""
+ROOM: Final = 3.0
+"""Of that: the means of spans in one rest lie so close together."""
+FAST: Final = 4.0
+"""Of that: so far away is the robot a span after it was pushed."""
 MANY: Final = 3
 """Visits, whose own spread is told."""
-FEWEST: Final = 4
-"""Batches, with fewer of which the error of a mean is hardly known."""
+FEWEST: Final = 6
+"""Batches or visits, with fewer of which the error of their mean is hardly known."""
 BATCHES: Final = 20
 
 
@@ -91,7 +97,7 @@ def resting_place(
     at = tuple(
         student(float(v), float(e), count, confidence) for v, e in zip(value, error, strict=True)
     )
-    return at, max(count, len(batches)) >= FEWEST
+    return at, count >= FEWEST
 
 
 def allowance(scene: Scene) -> Array:
@@ -123,10 +129,33 @@ def _rests(scene: Scene, stretch: Stretch, settling: float) -> list[Rest]:
     for first, last in _runs(calm):
         # Calm at i speaks of the samples i to i + 2 span; in the first span it may still settle.
         begin, end = first + span, min(last - 1 + 2 * span, count)
-        to_the_end = end >= count - 1
-        if end - begin >= LENGTHS * span * (1.0 if to_the_end else 2.0):
-            found.append(Rest(stretch.values[begin:end]))
+        begin = max(begin, _same_place(means[begin : end - span + 1], ROOM * allowed) + begin)
+        to_the_end = end > count - span
+        if not to_the_end or end < count:
+            end -= span  # It may have been on the way out.
+        if end - begin < LENGTHS * span * (1.0 if to_the_end else 2.0):
+            continue
+        values = stretch.values[begin:end]
+        after = means[min(end + span, len(means) - 1)]
+        pushed = np.any(np.abs(after - np.mean(values, axis=0)) > FAST * allowed)
+        if (to_the_end or pushed) and _stays(scene, values):
+            found.append(Rest(values))
     return found
+
+
+def _same_place(means: Array, room: Array) -> int:
+    """From which of the means (K, m) on all the later ones lie within `room` of one another."""
+    back = means[::-1]
+    reach = np.maximum.accumulate(back, axis=0) - np.minimum.accumulate(back, axis=0)
+    return len(means) - int(np.sum(np.all(reach <= room, axis=-1)))
+
+
+def _stays(scene: Scene, values: Array) -> bool:
+    """Whether the thirds of `values` (N, m) have one mean, but for noise and half the tolerance."""
+    thirds = np.array([np.mean(part, axis=0) for part in np.array_split(values, 3)])
+    drift = SURE * scene.noise * np.sqrt(6.0 / len(values))
+    allowed = np.maximum(SHARE * allowance(scene), drift)
+    return bool(np.all(np.ptp(thirds, axis=0) <= allowed))
 
 
 def _runs(calm: Booleans) -> list[tuple[int, int]]:

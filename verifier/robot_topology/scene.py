@@ -81,9 +81,10 @@ def scene_of(program: Program, needs: Needs, study: Study | None) -> Scene:
         SliceError: nothing moves by itself, or on more axes than a portrait has.
     """
     times = _base(needs)
-    setting = longest_setting(program, needs, times)
-    portrait = Scenes(program).at(setting.values, cycles=True, basins=False)
     fidelity = program.fidelity
+    horizon = 1.0 if fidelity is None else fidelity.horizon
+    setting = longest_setting(program, needs, times, horizon)
+    portrait = Scenes(program).at(setting.values, cycles=True, basins=False)
     declared = {} if fidelity is None else fidelity.tolerance
     return Scene(
         program=program,
@@ -94,7 +95,7 @@ def scene_of(program: Program, needs: Needs, study: Study | None) -> Scene:
         changes=changes_of(program, needs),
         noise=_noise(needs, study),
         tolerance=np.array([declared.get(axis.name, np.inf) for axis in portrait.axes]),
-        horizon=1.0 if fidelity is None else fidelity.horizon,
+        horizon=horizon,
     )
 
 
