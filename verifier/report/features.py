@@ -15,7 +15,10 @@ from verifier.report.report import Interval
 
 @final
 class FeatureStanding(StrEnum):
-    """Where a feature of the robot stands against the spec's, at the confidence of `Features`."""
+    """Where a feature of the robot stands against the spec's, at the confidence of `Features`.
+
+    Not visited: the trace tells nothing of it. Undecided: too little.
+    """
 
     WITHIN = "within"
     EXCEEDED = "exceeded"
@@ -99,7 +102,7 @@ class Features:
     axes: the names of the m axes, with their units. settings: the controls and held states at
     which the spec's features were computed: those that held longest in the trace, SI.
     features: declared ones first. notes: sentences on what could not be compared and why.
-    confidence: of every interval.
+    confidence: at which all intervals together hold the truth.
     """
 
     axes: tuple[str, ...]

@@ -3,6 +3,10 @@
 Attractors are looked for where the robot rests, cycles in its laps: the trace itself tells. The
 field refitted to the trace tells the same a second way, and all that nobody rests at: saddles and
 other places that repel. What the trace does not reach is said to be not visited.
+
+Many numbers are judged at once. Each interval is so wide that all of them together hold the truth
+at the confidence of the verdict (Bonferroni), so a faithful robot is told that something differs in
+one of twenty traces at most, not in one of twenty numbers.
 """
 
 from typing import Final
@@ -10,10 +14,13 @@ from typing import Final
 import numpy as np
 
 from runtime.program import Program
+from verifier.fidelity.judging.departure import CONFIDENCE
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import needs_of
 from verifier.report.features import ComparedFeature, Features
+from verifier.report.wording import percent
 from verifier.robot_topology.cycle_features import cycle_features
+from verifier.robot_topology.declared import numbers_judged
 from verifier.robot_topology.point_features import point_features
 from verifier.robot_topology.refit import refitted
 from verifier.robot_topology.refitted_points import RefitView
@@ -25,14 +32,11 @@ from verifier.topology.slices import SliceError
 from verifier.topology.words import settings_words
 from verifier.traces.trace import Trace
 
-CONFIDENCE: Final = 0.95
 SEED: Final = 6_180
 """Of draws and resamples: the same trace gives the same features."""
-DRAWS: Final = 48
+DRAWS: Final = 200
 MOST: Final = 0.98
 """Of the time; where the setting held for less, it is told for how much."""
-LEAST: Final = 0.05
-"""Of the time that a setting must hold for anything to be seen directly."""
 
 
 def compare_features(program: Program, trace: Trace, study: Study | None) -> Features:
@@ -50,11 +54,12 @@ def compare_features(program: Program, trace: Trace, study: Study | None) -> Fea
     rng = np.random.default_rng(SEED)
     anything = scene.portrait.fixed_points or scene.portrait.cycles
     refit = refitted(study, allowance(scene)) if study is not None and anything else None
-    view = None if refit is None else RefitView(scene, refit, refit.draws(DRAWS, rng), CONFIDENCE)
-    places = resting_places(scene, CONFIDENCE)
+    each = 1.0 - (1.0 - CONFIDENCE) / max(numbers_judged(scene), 1)
+    view = None if refit is None else RefitView(scene, refit, refit.draws(DRAWS, rng), each)
+    places = resting_places(scene, each)
     features = (
-        *point_features(scene, view, places),
-        *cycle_features(scene, view, CONFIDENCE, rng),
+        *point_features(scene, view, places, each),
+        *cycle_features(scene, view, each, rng),
         *rests_of_robot_alone(scene, places),
     )
     return Features(
@@ -78,11 +83,15 @@ def _order(feature: ComparedFeature) -> tuple[bool, bool]:
 
 def _notes(scene: Scene, *, is_refitted: bool, any_: bool) -> tuple[str, ...]:
     notes = []
-    share, values = scene.setting.share, settings_words(scene.program, scene.setting.values)
-    if share < MOST and values:
+    share, values = scene.setting.share, settings_words(scene.program, scene.setting.varied)
+    if values and share == 0.0:
         notes.append(
-            f"the inputs varied: features are those at {values}, which held for"
-            f" {100.0 * share:.0f} % of the time"
+            f"the inputs kept changing, and the features move with them: told are those at {values}"
+        )
+    elif values and share < MOST:
+        notes.append(
+            f"the inputs varied, and the features move with them: told are those at {values},"
+            f" which held for {percent(share)} of the time"
         )
     if not is_refitted and any_:
         notes.append(f"the field was not refitted: {_why_not(scene)}")

@@ -7,7 +7,7 @@ import numpy as np
 from runtime.claim import Claim
 from runtime.program import Unit
 from verifier.report.features import ComparedFeature, Estimate, FeatureNumber, FeatureStanding
-from verifier.robot_topology.declared import claim_on, period_allowed, reach_allowed
+from verifier.robot_topology.declared import claim_on, period_allowed, reach_allowed, reach_names
 from verifier.robot_topology.laps import Laps, laps_of, nearest_cycle, on_cycle, period_of_laps
 from verifier.robot_topology.loops import MeanLap, mean_lap, spec_swing
 from verifier.robot_topology.mode_laps import laps_by_modes, round_of
@@ -89,23 +89,20 @@ def _numbers(
     allowed = period_allowed(scene, claim, cycle)
     by_refit = None if refit is None else refit.period
     found = [_number("period", SECOND, cycle.period, (period, by_refit), allowed)]
-    claimed = set() if claim is None else {reach.state for reach in claim.reaches}
     for j, axis in enumerate(scene.axes):
         if cycle.turns[j]:
             continue
         allowed = reach_allowed(scene, claim, j)
         values = (amplitude[j], low[j], high[j])
-        names = (f"amplitude of {axis.name}", f"lowest {axis.name}", f"highest {axis.name}")
         both = [
             (None, None, None)
             if each is None
             else (each.amplitude[j], each.lowest[j], each.highest[j])
             for each in (lap, refit)
         ]
-        wanted = range(3) if axis.name in claimed else range(1)
         found += [
-            _number(names[k], axis.unit, float(values[k]), (both[0][k], both[1][k]), allowed)
-            for k in wanted
+            _number(name, axis.unit, float(values[k]), (both[0][k], both[1][k]), allowed)
+            for k, name in enumerate(reach_names(scene, claim, j))
         ]
     return tuple(found)
 

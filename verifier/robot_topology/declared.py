@@ -73,6 +73,31 @@ def period_allowed(scene: Scene, claim: Claim | None, cycle: Cycle) -> tuple[flo
     return _wider(by_claim, float(late) / scene.horizon * cycle.period)
 
 
+def numbers_judged(scene: Scene) -> int:
+    """How many statements are made on features: numbers with a tolerance, and types of points."""
+    count = 0
+    axes = range(len(scene.axes))
+    for i, point in enumerate(scene.portrait.fixed_points):
+        if not point.drifts:
+            claim = claim_on(scene, is_cycle=False, index=i)
+            count += 1 + sum(np.isfinite(place_allowed(scene, claim, j)[0]) for j in axes)
+    for i, cycle in enumerate(() if scene.program.field.is_map else scene.portrait.cycles):
+        claim = claim_on(scene, is_cycle=True, index=i)
+        count += int(np.isfinite(period_allowed(scene, claim, cycle)[0]))
+        for j in axes:
+            if not cycle.turns[j] and np.isfinite(reach_allowed(scene, claim, j)[0]):
+                count += len(reach_names(scene, claim, j))
+    return count
+
+
+def reach_names(scene: Scene, claim: Claim | None, j: int) -> tuple[str, ...]:
+    """The numbers of a swing on axis j: its ends, too, where a claim speaks of them."""
+    name = scene.axes[j].name
+    claimed = claim is not None and any(reach.state == name for reach in claim.reaches)
+    names = (f"amplitude of {name}", f"lowest {name}", f"highest {name}")
+    return names if claimed else names[:1]
+
+
 def _wider(by_claim: float, by_tolerance: float) -> tuple[float, str]:
     if np.isfinite(by_tolerance):
         wider = by_claim > by_tolerance

@@ -1,7 +1,6 @@
 """Fixed points of the spec beside those of the robot."""
 
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
@@ -22,33 +21,44 @@ from verifier.robot_topology.wording import sentence_on
 from verifier.topology.features import FixedPoint
 from verifier.topology.names import point_name
 
-NEARLY_ALL: Final = 0.95
-
 
 def point_features(
-    scene: Scene, view: RefitView | None, places: tuple[RestingPlace, ...]
+    scene: Scene, view: RefitView | None, places: tuple[RestingPlace, ...], confidence: float
 ) -> tuple[ComparedFeature, ...]:
     """Every fixed point of the spec that is one of the whole behavior."""
     rests = {place.attractor: place for place in places}
     return tuple(
-        _feature(scene, i, None if view is None else refitted_point(view, point), rests.get(i))
+        _feature(
+            scene,
+            i,
+            None if view is None else refitted_point(view, point),
+            rests.get(i),
+            confidence,
+        )
         for i, point in enumerate(scene.portrait.fixed_points)
         if not point.drifts
     )
 
 
 def _feature(
-    scene: Scene, index: int, refit: RefittedPoint | None, rest: RestingPlace | None
+    scene: Scene,
+    index: int,
+    refit: RefittedPoint | None,
+    rest: RestingPlace | None,
+    confidence: float,
 ) -> ComparedFeature:
     point = scene.portrait.fixed_points[index]
     claim = claim_on(scene, is_cycle=False, index=index)
     near = refit if refit is not None and refit.is_visited else None
     if rest is not None and not rest.is_long and near is not None and near.at is not None:
         rest = None  # The refitted field knows it better.
+    likeness = _likeness(near, confidence, is_seen=rest is not None)
     numbers = tuple(
         _number(scene, point, claim, j, _seen(scene, point, rest, j), _refitted(near, j))
         for j in range(len(scene.axes))
     )
+    standing = together(numbers) if likeness is FeatureStanding.WITHIN else likeness
+    is_open = likeness is FeatureStanding.UNDECIDED
     robot = [n.robot.value for n in numbers if n.robot is not None]
     plain = ComparedFeature(
         kind=str(point.kind),
@@ -57,14 +67,27 @@ def _feature(
         origin=scene.program.field.origin if claim is None else claim.origin,
         in_spec=True,
         is_cycle=False,
-        numbers=numbers,
-        standing=_standing(numbers, near, is_seen=rest is not None),
+        numbers=tuple(_told(number, standing, is_open=is_open) for number in numbers),
+        standing=standing,
         visits=rest.visits if rest is not None else 0 if refit is None else refit.passes,
         spec_path=point.at[None, :],
         robot_path=np.array([robot]) if robot else np.empty((0, len(scene.axes))),
         sentence="",
     )
-    return replace(plain, sentence=sentence_on(plain, _manner(plain, near, rest)))
+    manner = _manner(point, near, rest, likeness)
+    return replace(plain, sentence=sentence_on(plain, manner, with_numbers=not is_open))
+
+
+def _likeness(near: RefittedPoint | None, confidence: float, *, is_seen: bool) -> FeatureStanding:
+    """Whether the robot has a point of this type there; a point too far away is another one."""
+    if is_seen:
+        return FeatureStanding.WITHIN
+    if near is None:
+        return FeatureStanding.NOT_VISITED
+    if near.alike <= 1.0 - confidence:
+        return FeatureStanding.EXCEEDED
+    is_sure = near.at is not None and near.alike >= confidence
+    return FeatureStanding.WITHIN if is_sure else FeatureStanding.UNDECIDED
 
 
 def _seen(scene: Scene, point: FixedPoint, rest: RestingPlace | None, j: int) -> Estimate | None:
@@ -96,26 +119,29 @@ def _number(
     return FeatureNumber(axis.name, axis.unit, spec, seen, refit, tolerance, by, standing)
 
 
-def _standing(
-    numbers: tuple[FeatureNumber, ...], near: RefittedPoint | None, *, is_seen: bool
-) -> FeatureStanding:
-    """With what the refit says of the type; a point that is gone is one too far away."""
-    if is_seen or near is None:
-        return together(numbers)
-    if near.alike <= 1.0 - NEARLY_ALL:
-        return FeatureStanding.EXCEEDED
-    is_sure = near.at is not None and near.alike >= NEARLY_ALL
-    return together(numbers) if is_sure else FeatureStanding.UNDECIDED
+def _told(number: FeatureNumber, standing: FeatureStanding, *, is_open: bool) -> FeatureNumber:
+    """One that was not found, or that may be of another point, stands as its feature does."""
+    return replace(number, standing=standing) if is_open or number.robot is None else number
 
 
-def _manner(feature: ComparedFeature, near: RefittedPoint | None, rest: RestingPlace | None) -> str:
+def _manner(
+    point: FixedPoint,
+    near: RefittedPoint | None,
+    rest: RestingPlace | None,
+    likeness: FeatureStanding,
+) -> str:
     """How the robot's place was found, as a clause that its coordinates end."""
     if rest is not None:
         return f"the robot rests {'once' if rest.visits == 1 else f'{rest.visits} times'} at"
     if near is None:
         return "not visited by the robot in this trace"
+    if likeness is FeatureStanding.UNDECIDED:
+        return (
+            "not decided: the robot comes near, but this trace does not tell whether its field has"
+            f" a {point.kind} there"
+        )
     if near.at is None:
-        return "the robot goes past, but the field refitted to it has none near"
-    if feature.standing is FeatureStanding.EXCEEDED and near.alike <= 1.0 - NEARLY_ALL:
+        return "the robot comes near, and the field refitted to it has none there"
+    if likeness is FeatureStanding.EXCEEDED:
         return "the field refitted to the robot has a point of another type, at"
     return "the field refitted to the robot has it at"

@@ -27,16 +27,17 @@ def estimate_words(estimate: Estimate, unit: Unit) -> str:
     return f"{value:.{decimals}f} ± {half:.{decimals}f}{suffix(unit)}"
 
 
-def sentence_on(feature: ComparedFeature, manner: str) -> str:
+def sentence_on(feature: ComparedFeature, manner: str, *, with_numbers: bool = True) -> str:
     """The sentence on a feature of the spec.
 
-    manner: how the robot's was found, as a clause that its numbers end: `the robot rests at`.
+    manner: how the robot's was found, as a clause that its numbers end: `the robot rests at`; a
+    whole clause where there are none, or they are left out.
     """
     head = f"{feature.name[:1].upper()}{feature.name[1:]}"
     if feature.claim:
         head += f" ({feature.claim})"
     told = [number for number in feature.numbers if number.robot is not None]
-    if not told:
+    if not told or not with_numbers:
         return f"{head}: {manner}."
     robot = listed([_robot_words(number) for number in told])
     return f"{head}: {manner} {robot}; {_judgement(feature)}."
