@@ -56,9 +56,9 @@ def advice_of(pool: Pool) -> tuple[str, ...]:
 
 
 def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
-    """Why each recording that did not pass did not: `run.mcap: FAIL: …`, what decides first."""
+    """Why each recording that did not pass did not: `run.mcap, FAIL: …`, what decides first."""
     told = sorted((each for each in outcomes if _why(each)), key=_rank)
-    return tuple(f"{source_of(each)}: {_word(each)}{_why(each)}" for each in told)
+    return tuple(f"{source_of(each)}{_word(each)}: {_why(each)}" for each in told)
 
 
 def _rank(outcome: Outcome) -> int:
@@ -70,8 +70,8 @@ def _rank(outcome: Outcome) -> int:
 
 def _word(outcome: Outcome) -> str:
     if isinstance(outcome, Unusable):
-        return "can't be used: "
-    return f"{outcome.report.verdict.upper()}: "
+        return " can't be used"
+    return f", {outcome.report.verdict.upper()}"
 
 
 def columns_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:

@@ -1,10 +1,12 @@
 """Coverage: which cells of the declared region the judged windows went through."""
 
+from collections.abc import Iterable
 from itertools import combinations
 from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -25,13 +27,19 @@ def draw_coverage(coverage: Coverage) -> Figure:
     planes = _planes(coverage)
     with look():
         figure = Figure(figsize=(7.2, 1.5 if len(coverage.axes) == 1 else 3.2))
-        grid = framed(figure, 1, len(planes), (0.9, 0.1, 0.5, 0.4))
+        left = left_of(value for axis in coverage.axes for value in axis.values)
+        grid = framed(figure, 1, len(planes), (left, 0.1, 0.5, 0.4))
         grid.update(wspace=0.45)
         for column, (i, j) in enumerate(planes):
             _plane(figure.add_subplot(grid[column]), coverage, i, j)
         if len(coverage.axes) <= 2:
             figure.legend(handles=_legend(coverage.enough), loc="upper left", ncols=2)
     return figure
+
+
+def left_of(labels: Iterable[str]) -> float:
+    """The margin in inches at the left, where such labels may stand beside an axis."""
+    return max(0.9, min(2.4, 0.5 + 0.07 * max(map(len, labels), default=0)))
 
 
 def _planes(coverage: Coverage) -> list[tuple[int, int]]:
@@ -49,12 +57,21 @@ def _plane(axes: Axes, coverage: Coverage, i: int, j: int) -> None:
     )
     bare(axes)
     axes.set_xlabel(axis_label(coverage.axes[i].name, coverage.axes[i].unit))
+    _name(axes.xaxis, coverage.axes[i])
     if i == j:
         axes.set_yticks([])
     else:
         axes.set_ylabel(axis_label(coverage.axes[j].name, coverage.axes[j].unit))
+        _name(axes.yaxis, coverage.axes[j])
     if len(coverage.axes) <= 2 and share.size <= WRITTEN:
         _write(axes, coverage, x, y)
+
+
+def _name(axis: Axis, shown: CellAxis) -> None:
+    """The names of a discrete variable's values instead of numbers."""
+    if shown.values:
+        centres = np.linspace(shown.low, shown.high, 2 * shown.count + 1)[1::2] / shown.unit.scale
+        axis.set_ticks(list(centres), labels=list(shown.values))
 
 
 def _seen_share(coverage: Coverage, i: int, j: int) -> Array:

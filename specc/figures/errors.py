@@ -4,12 +4,14 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from runtime.arrays import Array
 from runtime.program import Unit
+from specc.figures.coverage import left_of
 from specc.figures.quantities import axis_label
 from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, framed, look
 from verifier.report.report import Report, VariableResult
@@ -64,7 +66,8 @@ def draw_error_map(report: Report, variable: VariableResult) -> Figure:
     known = np.isfinite(size)
     with look():
         figure = Figure(figsize=(7.2, 3.1))
-        axes = figure.add_subplot(framed(figure, 1, 1, (0.9, 0.1, 0.5, 0.12))[0])
+        left = left_of(value for name in names for value in _values(report, name))
+        axes = figure.add_subplot(framed(figure, 1, 1, (left, 0.1, 0.5, 0.12))[0])
         bare(axes)
         x = _in_unit(report, names[0])
         axes.set_xlabel(axis_label(names[0], _unit(report, names[0])))
@@ -76,7 +79,22 @@ def draw_error_map(report: Report, variable: VariableResult) -> Figure:
             y = _in_unit(report, names[1])
             _colored(figure, axes, np.stack([x, y])[:, known], size[known], variable.name)
             axes.set_ylabel(axis_label(names[1], _unit(report, names[1])))
+            _name(axes.yaxis, report, names[1])
+        _name(axes.xaxis, report, names[0])
     return figure
+
+
+def _name(axis: Axis, report: Report, name: str) -> None:
+    """The names of a discrete variable's values instead of numbers."""
+    values = _values(report, name)
+    if values:
+        axis.set_ticks(range(len(values)), labels=list(values))
+
+
+def _values(report: Report, name: str) -> tuple[str, ...]:
+    """Of a discrete variable, its values; else none."""
+    shown = () if report.coverage is None else report.coverage.axes
+    return next((each.values for each in shown if each.name == name), ())
 
 
 def places_shown(report: Report) -> tuple[str, ...]:

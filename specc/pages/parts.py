@@ -18,10 +18,11 @@ from verifier.report.diagnosis import Candidate, Diagnosis, FittedNumber, Refitt
 from verifier.report.examination import Examination
 from verifier.report.features import Estimate, FeatureNumber, Features
 from verifier.report.limits import Limits
+from verifier.report.report import Interval
 from verifier.report.scores import Scores, VariableScores
 from verifier.report.switching import Switching, SwitchSort, Way
 from verifier.report.why import ranked, why
-from verifier.report.wording import percent
+from verifier.report.wording import digits_of, percent, suffix
 
 COUNTS: Final[dict[str, Callable[[Way], int]]] = {
     "expected": lambda way: way.expected,
@@ -86,7 +87,7 @@ def _refitted(each: Refitted) -> tuple[str, ...]:
     return (
         f"{name} (moved)" if each.is_moved else name,
         quantity(each.spec, each.unit),
-        quantity(each.value, each.unit),
+        f"{_beside(each.value, each.interval, each.unit)}{suffix(each.unit)}",
         ranged(each.interval, each.unit),
         each.origin,
     )
@@ -187,7 +188,7 @@ def _feature_cells(each: FeatureNumber) -> tuple[str, ...]:
 def _estimate(estimate: Estimate | None, unit: Unit) -> str:
     if estimate is None:
         return "–"
-    return f"{number(estimate.value / unit.scale)} ({ranged(estimate.interval, unit)})"
+    return f"{_beside(estimate.value, estimate.interval, unit)} ({ranged(estimate.interval, unit)})"
 
 
 def limits_part(limits: Limits, prefix: str) -> Part:
@@ -226,4 +227,12 @@ def _score_row(each: VariableScores) -> tuple[str, ...]:
         if iso is None
         else (iso.overall, iso.corridor, iso.phase, iso.magnitude, iso.slope)
     )
-    return (each.name, *(number(part) for part in (*parts, each.nrmse, each.r_squared)))
+    shares = (f"{part:.3f}" if math.isfinite(part) else "–" for part in (*parts, each.r_squared))
+    *iso_parts, r_squared = shares
+    return (each.name, *iso_parts, number(each.nrmse), r_squared)
+
+
+def _beside(value: float, interval: Interval, unit: Unit) -> str:
+    """A number in as many digits as its interval is shown in."""
+    scale = unit.scale
+    return number(value / scale, digits_of(interval.low / scale, interval.high / scale))

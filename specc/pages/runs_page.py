@@ -1,6 +1,7 @@
 """The reports of many recordings as one page: a table, then all together, then each by itself."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 from specc.figures.quantities import number, seconds
@@ -41,7 +42,7 @@ def gathered_runs(runs: Runs) -> RunsPage:
     common = tuple(_report_row(each.report, anchors[id(each)], columns) for each in runs.pools)
     pages = [(anchors[id(e)], _pool_page(e, anchors[id(e)])) for e in runs.pools]
     pages += [(anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found]
-    together = [reason for pool in runs.pools for reason in pool.report.reasons]
+    together = [f"{_told(pool)}: {reason}" for pool in runs.pools for reason in pool.report.reasons]
     own = reasons_of(outcomes)
     is_decided = worst is None or worst is Verdict.FAIL
     reasons = (*own, *together) if is_decided else (*together, *own)
@@ -61,7 +62,12 @@ def gathered_runs(runs: Runs) -> RunsPage:
 
 def _pool_page(pool: Pool, anchor: str) -> Page:
     """The page on all recordings together; what is drawn over time stands with each of them."""
-    return gathered(pool.examination, f"{anchor}-", is_drawn=False)
+    page = gathered(pool.examination, f"{anchor}-", is_drawn=False)
+    return replace(page, advice=advice_of(pool))
+
+
+def _told(pool: Pool) -> str:
+    return f"{pool.report.trace.source}, {pool.report.verdict.upper()}"
 
 
 def _is_long(outcomes: Sequence[Outcome]) -> bool:

@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from specc.figures.candidates import draw_candidates
 from specc.figures.coverage import draw_coverage
 from specc.figures.errors import draw_error_map, draw_errors, places_shown
 from specc.figures.style import rendered_svg
 from specc.figures.verdicts import draw_verdicts
 from specc.figures.windows import MOST, draw_windows
+from tests.specc.examination_scenes import examination
 from tests.specc.report_scenes import coverage, report
+from verifier.report.diagnosis import Candidate
 from verifier.report.report import HorizonFigure, Interval, Standing, Verdict
 
 
@@ -56,3 +59,46 @@ def test_an_unbounded_interval_can_be_drawn() -> None:
     variable = replace(made.variables[0], horizons=(open_ended,), standing=Standing.UNDECIDED)
 
     assert rendered_svg(draw_verdicts(replace(made, variables=(variable,))))
+
+
+def test_values_of_a_discrete_variable_stand_at_its_axis_by_name() -> None:
+    made = report(cells=coverage(2))
+    cells = made.coverage
+    assert cells is not None
+    first, second = cells.axes
+    named = replace(
+        second,
+        low=-0.5,
+        high=second.count - 0.5,
+        values=tuple(f"mode {k}" for k in range(second.count)),
+    )
+    seen = replace(cells, axes=(first, named))
+    places = {**made.places, second.name: np.zeros(len(made.starts))}
+
+    drawn = draw_coverage(seen)
+    mapped = draw_error_map(replace(made, coverage=seen, places=places), made.variables[0])
+
+    for figure in (drawn, mapped):
+        labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+        assert labels == list(named.values)
+
+
+def test_explanations_are_drawn_as_they_are_told_and_then_by_what_they_explain() -> None:
+    diagnosis = examination().diagnosis
+    assert diagnosis is not None
+    one = diagnosis.candidates[0]
+
+    def told(label: str, share: float, *, is_taken: bool) -> Candidate:
+        evidence = replace(one.evidence, share=share)
+        return replace(one, label=label, evidence=evidence, is_taken=is_taken)
+
+    shuffled = (
+        told("a little", 0.1, is_taken=False),
+        told("first", 0.8, is_taken=True),
+        told("most", 0.7, is_taken=False),
+        told("then", 0.3, is_taken=True),
+    )
+    axes = draw_candidates(replace(diagnosis, candidates=shuffled)).axes[0]
+
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert labels == ["first", "then", "most", "a little"]

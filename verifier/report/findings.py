@@ -13,6 +13,7 @@ from verifier.report.diagnosis import Diagnosis
 from verifier.report.examination import Examination
 from verifier.report.features import Features, FeatureStanding
 from verifier.report.report import Report, Standing, VariableResult, Verdict
+from verifier.report.situations import exceeded
 from verifier.report.switching import Switching, Way
 from verifier.report.wording import percent, quantity, seconds, span
 
@@ -87,7 +88,10 @@ def departs(report: Report, result: VariableResult) -> str:
     """How far one variable departs, as a sentence.
 
     `x departs by 0.031 m after 2 s (95 % interval 0.02 to 0.04 m); the tolerance is 0.05 m`.
+    Of one that exceeds its tolerance, where it does and in which direction.
     """
+    if result.standing is Standing.EXCEEDED:
+        return exceeded(result, report.units)
     at, unit = result.declared, result.unit
     interval = span(at.interval.low, at.interval.high, unit)
     return (

@@ -1,8 +1,43 @@
-"""Situations in which a variable departs, in words."""
+"""How a variable departs, and in which situations, in words."""
 
 from runtime.program import Unit
-from verifier.report.report import RegionMean
-from verifier.report.wording import listed, quantity, span
+from verifier.report.report import RegionMean, VariableResult
+from verifier.report.wording import listed, number, quantity, span
+
+
+def exceeded(result: VariableResult, units: dict[str, Unit]) -> str:
+    """The variable, by how much, against what, how much of it is systematic, and where.
+
+    `heading departs by 0.033 rad after 5 s (0.02 rad is allowed), at least 0.028 rad of it
+    systematically: where it should fall by 0.4 rad, it ends 0.034 rad above the prediction`.
+    """
+    figure, unit = result.declared, result.unit
+    least = quantity(result.systematic, unit)
+    share = (
+        f", at least {least} of it systematically"
+        if result.systematic <= figure.departure
+        else f", and in some situations by at least {least} systematically"
+    )
+    return (
+        f"{result.name} departs by {quantity(figure.departure, unit)} after"
+        f" {number(figure.horizon)} s ({quantity(result.tolerance, unit)} is allowed){share}"
+        f"{_worst(result, units)}"
+    )
+
+
+def _worst(result: VariableResult, units: dict[str, Unit]) -> str:
+    """In which situation it is worst, and in which direction; none may stand out."""
+    region = result.worst
+    if region is None or abs(region.mean) <= result.tolerance:
+        return ": windows that are alike err alike, some above and some below the prediction"
+    side = "above" if region.mean > 0.0 else "below"
+    ends = sorted([abs(region.interval.low), abs(region.interval.high)])
+    place = where(region, result.unit, units)
+    return (
+        f": {f'{place}, it' if place else 'it'} ends {quantity(abs(region.mean), result.unit)}"
+        f" {side} the prediction on average (95 % interval {span(ends[0], ends[1], result.unit)},"
+        f" {region.windows} windows)"
+    )
 
 
 def where(region: RegionMean, unit: Unit, units: dict[str, Unit]) -> str:

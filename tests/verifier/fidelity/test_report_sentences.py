@@ -19,6 +19,7 @@ from verifier.report.report import (
     VariableResult,
     Verdict,
 )
+from verifier.report.situations import exceeded
 from verifier.traces.trace import Trace
 
 RADIAN, METRE, KELVIN = Unit("rad", 1.0), Unit("m", 1.0), Unit("K", 1.0)
@@ -65,7 +66,7 @@ def part(**changes: object) -> RegionMean:
 
 
 def told(**changes: object) -> str:
-    return sentences.exceeded(result(**changes), {"turn": Unit("rad/s", 1.0)})
+    return exceeded(result(**changes), {"turn": Unit("rad/s", 1.0)})
 
 
 # --- a variable that departs

@@ -28,46 +28,11 @@ HOPELESS = 100.0
 """Where so many times the data were needed, more data is no advice."""
 
 
-def exceeded(result: VariableResult, units: dict[str, Unit]) -> str:
-    """The variable, by how much, against what, how much of it is systematic, and where.
-
-    `heading departs by 0.033 rad after 5 s (0.02 rad is allowed), at least 0.028 rad of it
-    systematically: where it should fall by 0.4 rad, it ends 0.034 rad above the prediction`.
-    """
-    figure, unit = result.declared, result.unit
-    least = quantity(result.systematic, unit)
-    share = (
-        f", at least {least} of it systematically"
-        if result.systematic <= figure.departure
-        else f", and in some situations by at least {least} systematically"
-    )
-    return (
-        f"{result.name} departs by {quantity(figure.departure, unit)} after"
-        f" {number(figure.horizon)} s ({quantity(result.tolerance, unit)} is allowed){share}"
-        f"{_worst(result, units)}"
-    )
-
-
 def what_is_systematic() -> str:
     """The word that every sentence on a FAIL uses, explained once."""
     return (
         "systematic is what repeats whenever the robot is in the same situation: neither the noise"
         " of the sensors nor chance explains it"
-    )
-
-
-def _worst(result: VariableResult, units: dict[str, Unit]) -> str:
-    """In which situation it is worst, and in which direction; none may stand out."""
-    region = result.worst
-    if region is None or abs(region.mean) <= result.tolerance:
-        return ": windows that are alike err alike, some above and some below the prediction"
-    side = "above" if region.mean > 0.0 else "below"
-    ends = sorted([abs(region.interval.low), abs(region.interval.high)])
-    place = where(region, result.unit, units)
-    return (
-        f": {f'{place}, it' if place else 'it'} ends {quantity(abs(region.mean), result.unit)}"
-        f" {side} the prediction on average (95 % interval {span(ends[0], ends[1], result.unit)},"
-        f" {region.windows} windows)"
     )
 
 

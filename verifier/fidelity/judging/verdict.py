@@ -11,7 +11,8 @@ from verifier.fidelity.judging import sentences
 from verifier.fidelity.judging.evidence import Evidence
 from verifier.fidelity.judging.outside import Outside
 from verifier.report.report import Coverage, Standing, VariableResult, Verdict
-from verifier.report.wording import listed, number, percent, span
+from verifier.report.situations import exceeded
+from verifier.report.wording import listed, number, percent, quantity, span
 
 MOST_LOST = 0.1
 """With a larger share of predictions leaving the domain, there is no PASS."""
@@ -86,7 +87,7 @@ def _advice(results: tuple[VariableResult, ...], coverage: Coverage, judged: flo
 def _failed(evidence: Evidence, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:
     reasons = []
     for result in failed:
-        reasons.append(sentences.exceeded(result, units))
+        reasons.append(exceeded(result, units))
         reasons += sentences.proportion(evidence, result)
     reasons.append(sentences.what_is_systematic())
     advice = (
@@ -150,11 +151,10 @@ def _noise_notes(evidence: Evidence) -> list[str]:
     for j, state in enumerate(evidence.states):
         every = [noise[j] for noise in evidence.noise]
         if len(every) > 1:
-            sigmas = [noise.sigma for noise in every]
-            notes.append(
-                f"the noise of {state.name} is told by each recording for itself:"
-                f" {span(min(sigmas), max(sigmas), state.unit)}"
-            )
+            low, high = min(n.sigma for n in every), max(n.sigma for n in every)
+            is_one = quantity(low, state.unit) == quantity(high, state.unit)
+            size = f"{quantity(low, state.unit)} each" if is_one else span(low, high, state.unit)
+            notes.append(f"the noise of {state.name} is told by each recording for itself: {size}")
         for source, noise in zip(evidence.sources, every, strict=True):
             if noise.correlation > WHITE:
                 where = f" in {source}" if len(every) > 1 else ""
