@@ -1,7 +1,8 @@
 """The documentation is held against the code: examples, keys, codes, messages, links.
 
-`docs/spec_language.md`: its first YAML block is the base spec. A block that begins with `specc:` is
-a spec of its own; any other is a fragment that is put into the base as that page says. A comment
+The language is `docs/spec_language.md` and `docs/architecture_language.md`. The first YAML block is
+the base spec. A block that begins with `specc:` is a spec of its own; any other is a fragment that
+is put into the base as that page says. A comment
 `<!-- file: NAME -->` names the file that the next block stands for, `<!-- run -->` a script that
 makes one.
 """
@@ -25,7 +26,10 @@ from spec_schema.source import Source
 from spec_schema.yaml_reader import read
 
 ROOT = Path(__file__).parents[1]
-LANGUAGE = (ROOT / "docs" / "spec_language.md").read_text(encoding="utf-8")
+LANGUAGE = "\n".join(
+    (ROOT / "docs" / page).read_text(encoding="utf-8")
+    for page in ("spec_language.md", "architecture_language.md")
+)
 ERRORS = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[^\n]*) -->\n)?```(?P<kind>\w+)\n(?P<text>.*?)```", re.DOTALL)
@@ -97,7 +101,7 @@ def test_an_example_is_read_as_it_stands(place: str) -> None:
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_every_key_is_named_and_shown(kind: str) -> None:
-    shown = {pair for text in EXAMPLES.values() for pair in keys_used(whole(text), kind)}
+    shown = {pair for text in EXAMPLES.values() for pair in keys_used(whole(text))}
 
     for keys in models(kind):
         for key in keys:
@@ -113,17 +117,16 @@ def models(kind: str) -> Iterator[frozenset[str]]:
             yield frozenset(part["properties"])
 
 
-def keys_used(spec: dict[str, object], kind: str) -> Iterator[tuple[frozenset[str], str]]:
+def keys_used(spec: dict[str, object]) -> Iterator[tuple[frozenset[str], str]]:
     """Each fixed key that the spec uses, with those that could stand beside it."""
-    if spec["kind"] != kind:
-        return
+    model = MODELS[str(spec["kind"])]
     waiting: list[tuple[tuple[str | int, ...], object]] = [((), spec)]
     while waiting:
         path, value = waiting.pop()
         if isinstance(value, list):
             waiting += [((*path, i), item) for i, item in enumerate(value)]
         if isinstance(value, dict):
-            keys = frozenset(keys_at(MODELS[kind], path))
+            keys = frozenset(keys_at(model, path))
             yield from ((keys, key) for key in value if keys)
             waiting += [((*path, key), item) for key, item in value.items()]
 
