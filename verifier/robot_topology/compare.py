@@ -82,8 +82,10 @@ def _order(feature: ComparedFeature) -> tuple[bool, bool]:
 
 
 def _notes(scene: Scene, *, is_refitted: bool, any_: bool) -> tuple[str, ...]:
-    notes = []
     share, values = scene.setting.share, settings_words(scene.program, scene.setting.varied)
+    if not any_:
+        return (_nothing_there(values),)
+    notes = []
     if values and share == 0.0:
         notes.append(
             f"the inputs kept changing, and the features move with them: told are those at {values}"
@@ -93,11 +95,17 @@ def _notes(scene: Scene, *, is_refitted: bool, any_: bool) -> tuple[str, ...]:
             f"the inputs varied, and the features move with them: told are those at {values},"
             f" which held for {percent(share)} of the time"
         )
-    if not is_refitted and any_:
+    if not is_refitted:
         notes.append(f"the field was not refitted: {_why_not(scene)}")
-    if not any_:
-        notes.append("neither the spec nor the robot has a fixed point or a cycle here")
     return tuple(notes)
+
+
+def _nothing_there(values: str) -> str:
+    where = f" at {values}" if values else ""
+    return (
+        f"nothing to compare: the spec has no fixed point and no cycle{where}, and the robot was"
+        " not seen to rest"
+    )
 
 
 def _why_not(scene: Scene) -> str:

@@ -21,7 +21,7 @@ from runtime.arrays import Array, Integers
 from verifier.report.features import Estimate
 from verifier.robot_topology.intervals import student
 from verifier.robot_topology.laps import FEWEST, Laps, on_cycle
-from verifier.robot_topology.swings import swing
+from verifier.robot_topology.swings import swing, swing_with_corners
 from verifier.topology.features import Cycle
 
 GRID: Final = 120
@@ -79,12 +79,13 @@ def mean_lap(
     _, of_spec = _moments(samples, samples.spec, grid, count)
     everything = np.ones((1, count))
     picks = rng.multinomial(count, np.full(count, 1.0 / count), RESAMPLES).astype(np.float64)
+    swings = swing_with_corners if len(samples.arcs) else swing
     exact = spec_swing(cycle)
-    plain = swing(_smooth(everything, moments, of_spec))
+    plain = swings(_smooth(everything, moments, of_spec))
     loop = _smooth(everything, moments, of_robot)
-    drawn = swing(_smooth(picks, moments, of_robot)) - swing(_smooth(picks, moments, of_spec))
+    drawn = swings(_smooth(picks, moments, of_robot)) - swings(_smooth(picks, moments, of_spec))
     # The highest of many noisy values is too high, in resamples once more by as much.
-    value = (2.0 * (swing(loop) - plain) - np.mean(drawn, axis=0) + exact)[0]
+    value = (2.0 * (swings(loop) - plain) - np.mean(drawn, axis=0) + exact)[0]
     error = np.sqrt(count / (count - 1.0)) * np.std(drawn, axis=0)
     low, high, amplitude = (
         tuple(
@@ -98,8 +99,7 @@ def mean_lap(
 
 def spec_swing(cycle: Cycle) -> Array:
     """Lowest, highest and half their distance (3, m) of the spec's own cycle."""
-    low, high = cycle.points.min(axis=0), cycle.points.max(axis=0)
-    return np.stack([low, high, 0.5 * (high - low)])
+    return swing_with_corners(cycle.points)
 
 
 def _grid(arcs: Array) -> Array:

@@ -11,6 +11,12 @@ def swing(loops: Array) -> Array:
     return np.stack([low, high, 0.5 * (high - low)], axis=-2)
 
 
+def swing_with_corners(loops: Array) -> Array:
+    """The same of loops with corners and jumps at some of their points, which are their ends."""
+    low, high = np.min(loops, axis=-2), np.max(loops, axis=-2)
+    return np.stack([low, high, 0.5 * (high - low)], axis=-2)
+
+
 def _peak(loops: Array) -> Array:
     """The highest value on each axis (..., m): of a parabola through the highest three points."""
     last = loops.shape[-2] - 2

@@ -34,8 +34,8 @@ def sentence_on(feature: ComparedFeature, manner: str, *, with_numbers: bool = T
     whole clause where there are none, or they are left out.
     """
     head = f"{feature.name[:1].upper()}{feature.name[1:]}"
-    if feature.claim:
-        head += f" ({feature.claim})"
+    if feature.is_declared:
+        head += ", expected by the spec"
     told = [number for number in feature.numbers if number.robot is not None]
     if not told or not with_numbers:
         return f"{head}: {manner}."
@@ -62,24 +62,32 @@ def _judgement(feature: ComparedFeature) -> str:
     if unlimited:
         names = listed([n.name for n in unlimited])
         return f"no tolerance says how far {names} may be off"
-    names = listed([f"{n.name} ({_room(n)} allowed)" for n in open_])
-    return f"not decided for {names}: more time there would tell"
+    return f"not clear for {listed([_doubt(n) for n in open_])}; a longer trace would tell"
 
 
 def _excess(number: FeatureNumber) -> str:
     assert number.robot is not None, "nothing unknown is exceeded"
-    off = quantity(abs(number.robot.value - number.spec), number.unit)
+    off = number.robot.value - number.spec
+    above, below = (
+        ("longer than", "shorter than") if number.name == "period" else ("above", "below")
+    )
     allowed = quantity(number.tolerance, number.unit)
     return (
-        f"its {number.name} is {off} off the spec's {quantity(number.spec, number.unit)},"
+        f"its {number.name} is {quantity(abs(off), number.unit)} {above if off > 0.0 else below}"
+        f" the spec's {quantity(number.spec, number.unit)},"
         f" where {number.allowed_by} allows {allowed}"
+    )
+
+
+def _doubt(number: FeatureNumber) -> str:
+    assert number.robot is not None, "of nothing unknown it is asked how far off it is"
+    off = quantity(abs(number.robot.value - number.spec), number.unit)
+    return (
+        f"{number.name} ({off} off the spec's {quantity(number.spec, number.unit)},"
+        f" {quantity(number.tolerance, number.unit)} allowed)"
     )
 
 
 def _allowed_by(numbers: tuple[FeatureNumber, ...]) -> str:
     """`the tolerance`, or `the claim and the tolerance`."""
     return listed(sorted({n.allowed_by for n in numbers if math.isfinite(n.tolerance)}))
-
-
-def _room(number: FeatureNumber) -> str:
-    return f"± {quantity(number.tolerance, number.unit)}"
