@@ -42,22 +42,34 @@ def gathered_runs(runs: Runs) -> RunsPage:
     common = tuple(_report_row(each.report, anchors[id(each)], columns) for each in runs.pools)
     pages = [(anchors[id(e)], _pool_page(e, anchors[id(e)])) for e in runs.pools]
     pages += [(anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found]
-    together = [f"{_told(pool)}: {reason}" for pool in runs.pools for reason in pool.report.reasons]
-    own = reasons_of(outcomes)
-    is_decided = worst is None or worst is Verdict.FAIL
-    reasons = (*own, *together) if is_decided else (*together, *own)
     return RunsPage(
         title=counted(outcomes),
         verdict="unusable" if worst is None else str(worst),
         sign="!" if worst is None else SIGNS[worst],
         headline=counted(outcomes),
-        reasons=reasons[:MOST],
-        advice=tuple(sentence for pool in runs.pools for sentence in advice_of(pool)),
+        reasons=top_reasons(runs),
+        advice=top_advice(runs),
         columns=(*columns, "coverage", "judged", "lost"),
         rows=(*rows, *common),
         how=how,
         pages=tuple(pages),
     )
+
+
+def top_reasons(runs: Runs) -> tuple[str, ...]:
+    """Why the verdict is what it is: each recording that did not pass, and what all together say.
+
+    What decides comes first.
+    """
+    together = [f"{_told(pool)}: {reason}" for pool in runs.pools for reason in pool.report.reasons]
+    own = reasons_of(runs.outcomes)
+    is_by_one = runs.verdict is None or runs.verdict is Verdict.FAIL
+    return ((*own, *together) if is_by_one else (*together, *own))[:MOST]
+
+
+def top_advice(runs: Runs) -> tuple[str, ...]:
+    """What to do next about all together."""
+    return tuple(sentence for pool in runs.pools for sentence in advice_of(pool))
 
 
 def _pool_page(pool: Pool, anchor: str) -> Page:
