@@ -44,10 +44,12 @@ class Aims:
     """What recordings say; all but the aims are sentences.
 
     beyond: what departs and no number of the spec stands for. left: what the aims would leave
-    open. With either, the structure differs. choices: what the recordings can't tell.
+    open. With either, the structure differs. choices: what the recordings can't tell. by_hand:
+    what a number would mend that stands within an expression.
     """
 
     aims: tuple[AnyAim, ...]
     beyond: tuple[str, ...] = ()
     left: tuple[str, ...] = ()
     choices: tuple[str, ...] = ()
+    by_hand: tuple[str, ...] = ()

@@ -88,7 +88,7 @@ class _Fit:
             source=self.source,
             edited=edited or self.source,
             moves=self.moves,
-            beyond=self.told.beyond,
+            beyond=(*self.told.beyond, *self.told.by_hand),
             left=self.told.left,
             choices=self.told.choices,
             stays=self.stays,
@@ -122,6 +122,8 @@ def _ended(case: _Fit, logs: Logs, tell: Tell, *, anyway: bool) -> Fitted:
     told = case.told
     if (told.beyond or told.left) and not (anyway and case.moves):
         return case.ended(Outcome.STRUCTURE_DIFFERS)
+    if told.by_hand and not (anyway and case.moves):
+        return case.ended(Outcome.BY_HAND)
     if told.choices and not (anyway and case.moves):
         return case.ended(Outcome.CANNOT_TELL)
     if not case.moves:

@@ -13,6 +13,7 @@ OPENINGS: Final = {
     Outcome.MOVED: "moved",
     Outcome.NOTHING_TO_MOVE: "nothing is to be moved",
     Outcome.NOTHING_MENDS_IT: "nothing is edited: no number of the spec mends it",
+    Outcome.BY_HAND: "nothing is edited: a number within an expression is to be changed by hand",
     Outcome.STRUCTURE_DIFFERS: "nothing is edited: the structure differs",
     Outcome.CANNOT_TELL: "nothing is edited: the recordings can't tell what to move",
 }

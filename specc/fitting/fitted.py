@@ -20,11 +20,13 @@ class Outcome(StrEnum):
     """How a fit ended. Only MOVED has another text than before.
 
     NOTHING_MENDS_IT: a recording fails, and no number of the spec was found that explains it.
+    BY_HAND: a number that does stands within an expression, where none is moved.
     """
 
     MOVED = "moved"
     NOTHING_TO_MOVE = "nothing to move"
     NOTHING_MENDS_IT = "nothing mends it"
+    BY_HAND = "to be edited by hand"
     STRUCTURE_DIFFERS = "the structure differs"
     CANNOT_TELL = "cannot tell"
 

@@ -32,7 +32,10 @@ def pooled(told: Sequence[Aims]) -> Aims:
             choices.append(f"{found[0].name}: the recordings contradict one another: {values}")
     beyond = dict.fromkeys(sentence for each in told for sentence in each.beyond)
     left = dict.fromkeys(sentence for each in told for sentence in each.left)
-    return Aims(tuple(aims), tuple(beyond), tuple(left), tuple(dict.fromkeys(choices)))
+    by_hand = dict.fromkeys(sentence for each in told for sentence in each.by_hand)
+    return Aims(
+        tuple(aims), tuple(beyond), tuple(left), tuple(dict.fromkeys(choices)), tuple(by_hand)
+    )
 
 
 def _mean(found: Sequence[Aim]) -> Aim:

@@ -23,7 +23,6 @@ from verifier.report.wording import listed, percent
 ENOUGH: Final = 0.6
 """What is moved explains at least this share of the error beyond noise."""
 SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
-OWN: Final = (ParameterKind.CONSTANT, ParameterKind.CONTROL)
 LATE: Final = (CandidateKind.LATE_LOG, CandidateKind.CLOCK_OFFSET)
 OF_LOGS: Final = (CandidateKind.SIGN, CandidateKind.UNIT_SLIP)
 
@@ -36,13 +35,23 @@ def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
     if diagnosis.told is Told.STRUCTURE_DIFFERS and not found:
         beyond = diagnosis.sentences[:2]
     choices = (*_choices(diagnosis), *(_either(*each) for each in _late_instead(diagnosis)))
-    return Aims(aims, beyond, _left(diagnosis) if aims else (), choices)
+    left = _left(diagnosis) if aims else ()
+    return Aims(aims, beyond, left, choices, _by_hand(diagnosis))
+
+
+def _by_hand(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """The bare numbers of guards: those with names stand among the refitted ones."""
+    named = {each.name for each in diagnosis.refitted}
+    return tuple(
+        each.sentence
+        for each in diagnosis.candidates
+        if each.is_taken and each.kind is CandidateKind.GUARD and not named & set(each.applies_to)
+    )
 
 
 def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
     bindings = {binding.name: binding for binding in program.bindings}
     moved = _in_order(diagnosis)
-    own_names = {each.name for each in moved if each.kind in OWN}
     of_rates = {each.name for each in moved if each.kind is ParameterKind.RATE_GAIN}
     found: list[AnyAim | str] = []
     by_hand: set[str] = set()
@@ -53,9 +62,7 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
         if each.kind in OF_LOGS and not of_rates & set(each.applies_to):
             found += mended(each, program, bindings)
             by_hand.update(each.applies_to)
-        elif each.kind is CandidateKind.GUARD and set(each.applies_to) & own_names:
-            continue  # it stands among the moved numbers
-        elif each.kind not in SCALARS + OF_LOGS + LATE:
+        elif each.kind not in (*SCALARS, *OF_LOGS, *LATE, CandidateKind.GUARD):
             found.append(each.sentence)
     names = dict.fromkeys(each.name for each in moved if each.kind in OF_INPUTS + OF_SENSORS)
     for name in names:

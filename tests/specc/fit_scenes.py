@@ -35,8 +35,18 @@ def patrol(folder: Path, *more: str) -> Path:
     return path
 
 
-def patrolled(path: Path, forward: float, seconds: float = 60.0, seed: int = 1) -> Path:
+def patrolled(
+    path: Path,
+    forward: float,
+    seconds: float = 60.0,
+    seed: int = 1,
+    *,
+    far: float = 1.5,
+    bounces: bool = False,
+) -> Path:
     """A log of a robot that settles at `forward` m/s ahead and at 0.5 back: noisy, 20 Hz.
+
+    It turns at `far`, 1.5 by the spec. Where it bounces, its speed turns round there at once.
 
     Exact over steps of 1 ms: with e = exp(-2 dt), v becomes w + (v - w) e and x grows by
     w dt + (v - w) (1 - e) / 2, where w is the speed that it settles at.
@@ -49,11 +59,49 @@ def patrolled(path: Path, forward: float, seconds: float = 60.0, seed: int = 1) 
         wanted = forward if ahead else -0.5
         x += 0.001 * wanted + (v - wanted) * (1.0 - keep) / 2.0
         v = wanted + (v - wanted) * keep
-        ahead = x < 1.5 if ahead else x <= -1.5
+        goes = x < far if ahead else x <= -1.5
+        v = -v if bounces and goes != ahead else v
+        ahead = goes
     times, xs, vs, going = (np.array(column) for column in zip(*rows, strict=True))
     xs = xs + 0.005 * rng.normal(size=xs.shape)
     vs = vs + 0.01 * rng.normal(size=vs.shape)
     return written(path, {"t": times, "x": xs, "v": vs, "going": going})
+
+
+MOVER = """specc: 1
+kind: behavior
+name: mover
+state:
+  x: {unit: m, domain: [-5, 5], role: both, relates: {agent: base, environment: room}}
+control:
+  goal: {unit: m, domain: [-4, 4], default: 0}
+constants:
+  pull: {value: 1.5, unit: 1/s, about: how fast it goes there}
+field:
+  formula: {x: pull * (goal - x)}
+fidelity:
+  tolerance: {x: 0.05 m}
+  horizon: 2 s
+trace:
+  x: x
+  goal: goal
+"""
+
+
+def late_mover(path: Path, late: float, seconds: float = 60.0) -> Path:
+    """A log at 20 Hz of a robot that goes to goals; its place is told `late` seconds late.
+
+    Exact between goals: the distance to one shrinks by exp(-1.5 dt).
+    """
+    rng = np.random.default_rng(5)
+    goals = np.repeat(rng.uniform(-2.0, 2.0, int(seconds)), 20)
+    xs, keep = [0.0], math.exp(-1.5 * 0.05)
+    for goal in goals[:-1]:
+        xs.append(goal + (xs[-1] - goal) * keep)
+    back = round(late * 20.0)
+    x = np.array(xs)[: len(xs) - back] + 0.01 * rng.normal(size=len(xs) - back)
+    times = np.arange(len(goals)) / 20.0
+    return written(path, {"t": times[back:], "x": x, "goal": goals[back:]})
 
 
 DRAWN = """specc: 1
