@@ -7,6 +7,7 @@ import shutil
 import sqlite3
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -170,6 +171,26 @@ def test_a_database_with_values_of_other_types_loses_those_rows(workshop: Any) -
     }
 
 
+def test_rows_of_a_database_without_numbers_are_survived(workshop: Any) -> None:
+    path = write_database(workshop, 20)
+    with sqlite3.connect(path) as database:
+        for table in ("topics", "messages"):
+            # As damage to the schema leaves it: the number is a value like others, and lacks.
+            database.execute(f"CREATE TABLE plain AS SELECT * FROM {table}")  # noqa: S608  # our own
+            database.execute(f"DROP TABLE {table}")
+            database.execute(f"ALTER TABLE plain RENAME TO {table}")
+        database.execute("INSERT INTO topics (id, name) VALUES (NULL, '/b'), ('x', '/c')")
+        database.execute("UPDATE messages SET id = NULL WHERE id = 1")
+    database.close()
+
+    trace = workshop.read(path, x="/o.pose.pose.position.x")
+
+    assert len(trace.series["x"].values) == 20
+    assert [(loss.cause, loss.count, loss.detail) for loss in trace.losses] == [
+        ("corrupt record", 2, "a topic without a number")
+    ]
+
+
 def knot(pages: int, cells: int) -> bytes:
     """A database without a tree, in which the cells of one leaf all lead to one long chain."""
     size, payload = 4096, (pages - 3) * 4092
@@ -318,6 +339,39 @@ def test_a_packed_log_is_unpacked_whole_or_torn(workshop: Any, make: Any, suffix
         found = trace.series["x"].values.tolist()
         assert found == list(range(len(found)))
         assert trace.losses
+
+
+CHECKED = {
+    "gz": gzip.compress,
+    "zst": zstandard.ZstdCompressor(write_checksum=True).compress,
+    "xz": partial(lzma.compress, preset=0),
+    "lz4": partial(lz4.frame.compress, content_checksum=True),
+}
+
+
+@pytest.mark.parametrize("suffix", list(CHECKED))
+def test_of_a_packed_log_that_is_damaged_what_stands_before_is_read_and_nothing_vouched_for(
+    workshop: Any, suffix: str
+) -> None:
+    rng = np.random.default_rng(3)
+    rows = "".join(f"{0.1 * i:.1f},{i},{rng.random()}\n" for i in range(10_000))
+    packed = bytearray(CHECKED[suffix](f"t,x,r\n{rows}".encode()))
+    middle = len(packed) * 6 // 10
+    packed[middle : middle + 200] = rng.bytes(200)
+
+    trace = workshop.read(workshop.text(bytes(packed), f"log.csv.{suffix}"), x="x")
+
+    details = {loss.cause: loss.detail for loss in trace.losses}
+    assert "no checksum vouches" in details["packed file damaged"]
+    seen = np.isin(np.arange(10_000), trace.series["x"].values)
+    assert seen[:1000].all()
+
+
+def test_a_packed_log_of_which_nothing_is_left_is_not_called_empty(workshop: Any) -> None:
+    packed = gzip.compress(b"t,x\n0,1\n1,2\n")
+
+    with pytest.raises(SpecError, match=r"V302.*nothing of it can be unpacked"):
+        workshop.read(workshop.text(packed[:10] + b"\xff" * 20, "log.csv.gz"), x="x")
 
 
 @pytest.fixture

@@ -87,7 +87,10 @@ def _read_topics(database: sqlite3.Connection, gathering: Gathering[int]) -> Non
         for name, encoding, text in database.execute(_DEFINITIONS):
             definitions[str(name)] = (str(encoding), str(text).encode())
     for number, name, kind, encoding in database.execute(_TOPICS):
-        gathering.declare(int(number), _channel(str(name), str(kind), str(encoding), definitions))
+        if isinstance(number, int):
+            gathering.declare(number, _channel(str(name), str(kind), str(encoding), definitions))
+        else:
+            gathering.lose("corrupt record", "a topic without a number")
 
 
 def _channel(name: str, kind: str, encoding: str, definitions: Definitions) -> Channel:
@@ -105,7 +108,7 @@ def _read_rows(
         for number, topic, log_time, payload in batch:
             _add(gathering, topic, log_time, payload)
             done += len(payload) if isinstance(payload, bytes) else 0
-            last = number
+            last = number if isinstance(number, int) else last
         tell(min(done, size), size)
     if last > gathering.count:
         gathering.notes.append(

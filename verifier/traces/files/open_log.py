@@ -100,14 +100,18 @@ def _read_packed(path: Path, wanted: Wanted, tell: Progress) -> LogFile:
     with _temporary(path) as folder:
         inside = Path(folder) / path.stem
         fault = unpack_file(path, inside)
-        if is_packed(_head(inside)):
+        head = _head(inside)
+        if fault and not head:
+            raise file_fault(path, "V302", f"nothing of it can be unpacked: {fault}")
+        if is_packed(head):
             raise file_fault(path, "V302", "the file is packed twice", "unpack it first")
         try:
             log = open_log(inside, wanted, tell)
         except SpecError as error:
             about = [replace(d, source=Source(str(path), "")) for d in error.diagnostics]
             raise SpecError(about) from error
-    lost = (Loss("packed file damaged", 1, fault),) if fault else ()
+    told = f"{fault}; no checksum vouches for what was read of it"
+    lost = (Loss("packed file damaged", 1, told),) if fault else ()
     return replace(log, source=str(path), losses=(*lost, *log.losses))
 
 

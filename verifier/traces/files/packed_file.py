@@ -4,6 +4,7 @@ import bz2
 import gzip
 import lzma
 import shutil
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO, Final, Protocol, TypeAlias, final
@@ -28,14 +29,15 @@ KEPT_FREE: Final = 0.1
 
 ELSEWHERE: Final = "set TMPDIR to a folder on a larger disk, or unpack the log yourself"
 
-_PIECE = 1 << 20
+_PIECE = 1 << 16
 _FAULTS = (
-    OSError, EOFError, MemoryError, RuntimeError, ValueError, lzma.LZMAError, zstandard.ZstdError,
+    OSError, EOFError, MemoryError, RuntimeError, ValueError,
+    lzma.LZMAError, zlib.error, zstandard.ZstdError,
 )  # fmt: skip
 
 
 class _Readable(Protocol):
-    def read(self, size: int, /) -> bytes: ...
+    def read1(self, size: int, /) -> bytes: ...
 
 
 Opener: TypeAlias = Callable[[BinaryIO], _Readable]
@@ -102,7 +104,8 @@ class _Pieces:
     def __iter__(self) -> Iterator[bytes]:
         """The pieces; none is empty."""
         try:
-            while piece := self._reader.read(_PIECE):
+            # What `read` has gathered when it meets the damage is lost; `read1` gathers nothing.
+            while piece := self._reader.read1(_PIECE):
                 yield piece
         except _FAULTS as error:
             self.fault = str(error) or type(error).__name__
