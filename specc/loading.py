@@ -1,6 +1,7 @@
 """Specs into programs: compiled from YAML, or read from an artifact."""
 
 from pathlib import Path
+from typing import Final
 
 from compiler.compile import Compiled, compile_file
 from compiler.lower_field import Progress
@@ -10,6 +11,9 @@ from runtime.program import Program
 from specc.faults import fault
 from specc.files import write_atomically
 from specc.sketch_judge import faults_of
+
+LOGS: Final = frozenset({".mcap", ".bag", ".db3", ".ulg", ".csv"})
+"""What files are called that are no specs."""
 
 
 def _in_silence(_what: str, _done: int, _of: int) -> None:
@@ -22,7 +26,18 @@ def compile_spec(path: Path | str, progress: Progress = _in_silence) -> Compiled
     Raises:
         SpecError: with everything that is wrong with it.
     """
+    refuse_log(Path(path))
     return compile_file(Path(path), progress, faults_of)
+
+
+def refuse_log(path: Path) -> None:
+    """Stops before a log is read as a spec, of which every line would be a mistake.
+
+    Raises:
+        SpecError: the file's name is that of a log (V331).
+    """
+    if path.suffix.lower() in LOGS:
+        raise fault("V331", path, "this is a log, not a spec", f"specc verify {path} --spec SPEC")
 
 
 def write_artifact(program: Program, path: Path | str) -> bytes:

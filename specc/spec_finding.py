@@ -15,6 +15,7 @@ from specc.faults import fault
 from verifier.traces.files.open_log import attached_program
 
 PROJECT = "specc.yaml"
+SPECS = frozenset({".yaml", ".yml", ".specc"})
 
 
 @final
@@ -34,6 +35,7 @@ def find_spec(trace: Path, named: Path | None, program_of: Callable[[Path], Prog
     """
     if named is not None:
         return Found(program_of(named), f"{named}, as named by --spec")
+    _refuse_no_log(trace)
     attached = _attached(trace)
     project = _project_of(trace)
     if attached is not None:
@@ -57,6 +59,24 @@ def find_spec(trace: Path, named: Path | None, program_of: Callable[[Path], Prog
 class _Project:
     path: Path
     spec: ProjectSpec
+
+
+def _refuse_no_log(trace: Path) -> None:
+    """Nobody looks for a spec only to be told that there is nothing to judge by it."""
+    if trace.suffix in SPECS:
+        raise fault("V302", trace, "this is a spec, not a log", f"specc verify LOG --spec {trace}")
+    is_empty = not any(trace.iterdir()) if trace.is_dir() else _size(trace) == 0
+    if is_empty:
+        what = "folder" if trace.is_dir() else "file"
+        raise fault("V302", trace, f"the {what} is empty")
+
+
+def _size(trace: Path) -> int | None:
+    """Of a file; None where it can't be asked, which is told when it is opened."""
+    try:
+        return trace.stat().st_size
+    except OSError:
+        return None
 
 
 def _attached(trace: Path) -> tuple[str, Program] | None:

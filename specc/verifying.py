@@ -9,7 +9,7 @@ from runtime.program import Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import Loaded, load
-from specc.loading import load_program
+from specc.loading import load_program, refuse_log
 from specc.spec_finding import Found, find_spec
 from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of
@@ -111,6 +111,7 @@ def program_for_verify(path: Path) -> Program:
     Raises:
         SpecError: the spec is wrong, or its field is code.
     """
+    refuse_log(path)
     if path.suffix != ".specc":
         loaded = load(path)
         name = loaded.spec.name

@@ -119,6 +119,9 @@ def _usage(error: TyperException) -> str:
     if words.startswith("No such option"):
         meant = did_you_mean(getattr(error, "option_name", ""), _options(error))
         return f"{words}; {meant}" if meant else words
+    if words.startswith("Missing parameter"):
+        wanted = getattr(getattr(error, "param", None), "metavar", None)
+        return f"{wanted} is missing" if wanted else words
     option = next(iter(getattr(getattr(error, "param", None), "opts", ())), "")
     return f"{option}: {words}" if option.startswith("-") and option not in words else words
 

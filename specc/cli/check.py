@@ -46,8 +46,11 @@ def check(
     """
     from compiler.check import check as check_file
     from specc.files import spec_files
+    from specc.loading import refuse_log
 
     files = spec_files(paths)
+    for file in files:
+        refuse_log(file)
     if not files:
         raise typer.BadParameter(f"no .yaml file is in {', '.join(map(str, paths))}")
     found = tuple(d for file in files for d in check_file(file))

@@ -27,7 +27,9 @@ def warmed(spec: Path | None) -> None:
 def _refuse_mistakes(spec: Path) -> None:
     from compiler.check import check
     from spec_schema.diagnostics import Severity, SpecError
+    from specc.loading import refuse_log
 
+    refuse_log(spec)
     found = check(spec)
     if any(diagnostic.severity is Severity.ERROR for diagnostic in found):
         raise SpecError(found)

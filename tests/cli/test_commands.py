@@ -243,7 +243,7 @@ def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
         (["portrait", VDP, "--against", "nu"], "no control is named 'nu'"),
         (["portrait", VDP, "--against", "mu=1"], "write mu=LOW:HIGH"),
         (["verify", "nowhere.mcap", "--spec", VDP], "V301"),
-        (["verify", VDP], "V334"),
+        (["verify", str(ROOT / "README.md")], "V334"),
         (["init", "--template", "van_der_poll"], "V343"),
         (["check", "nowhere.yaml"], "S015"),
         (["simulate", VDP, "--start", "x"], "NAME=VALUE"),
@@ -253,6 +253,29 @@ def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
 def test_bad_usage_is_told_and_exits_with_2(
     arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    assert main(arguments) == 2
+    assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["verify", VDP], "this is a spec, not a log"),
+        (["verify", "empty.csv"], "the file is empty"),
+        (["verify", "."], "the folder is empty"),
+        (["verify", "run.csv", "--spec", "run.csv"], "this is a log, not a spec"),
+        (["check", "run.csv"], "this is a log, not a spec"),
+        (["portrait", "run.csv"], "this is a log, not a spec"),
+        (["verify"], "TRACE is missing"),
+    ],
+)
+def test_what_was_taken_for_something_else_is_called_what_it_is(
+    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if "." not in arguments:
+        Path("empty.csv").touch()
+        Path("run.csv").write_text("t,x\n0,0\n")
+
     assert main(arguments) == 2
     assert told in capsys.readouterr().err
 
