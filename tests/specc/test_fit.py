@@ -4,6 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,6 +33,8 @@ from tests.specc.fit_scenes import (
     whirled,
     written,
 )
+from verifier.diagnosis.diagnose import diagnose
+from verifier.report.diagnosis import CandidateKind, Diagnosis, Told
 from verifier.report.report import Verdict
 
 
@@ -308,14 +311,32 @@ def test_a_number_over_several_lines_is_not_moved(slower: specc.Fitted) -> None:
     )
 
 
-def test_the_husky_without_its_delays_gets_them_back(tmp_path: Path) -> None:
+def test_the_husky_without_its_delays_is_told_so_and_gets_them_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = (SPECS / "husky_drive.yaml").read_text(encoding="utf-8")
     bare = re.sub(r"\{path: (\S+), delay: \S+ s\}", r"\1", text)
     spec = tmp_path / "husky_drive.yaml"
     spec.write_text(bare, encoding="utf-8")
 
+    told: list[Diagnosis] = []
+
+    def heard(*given: Any) -> Diagnosis:
+        told.append(diagnose(*given))
+        return told[-1]
+
+    monkeypatch.setattr("specc.fitting.fit.diagnose", heard)
+
     found = specc.fit(SPECS / "recordings" / "husky" / "husky.mcap", spec)
 
+    [why] = told
+    taken = {each.label: each.kind for each in why.candidates if each.is_taken}
+    assert taken == {
+        "late log of speed": CandidateKind.LATE_LOG,
+        "late log of turn": CandidateKind.LATE_LOG,
+    }
+    [scale] = (each for each in why.refitted if each.name == "turn_scale")
+    assert scale.interval.low < 0.944 < scale.interval.high
     delayed = re.compile(r"^  (\w+): {path: \S+, delay: (\S+) s}$", re.MULTILINE)
     delays = dict(delayed.findall(found.edited.text))
     assert delays.keys() == {"speed", "turn"}
@@ -326,7 +347,12 @@ def test_the_husky_without_its_delays_gets_them_back(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("form", ["arrows", "grid"])
-def test_a_drawn_field_moves_to_what_the_robot_does(tmp_path: Path, form: str) -> None:
+def test_a_drawn_field_moves_to_what_the_robot_does(
+    tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if form == "grid":  # what the arrows' diagnosis says is known
+        structure = Diagnosis(Told.STRUCTURE_DIFFERS, ("why",), (), (), (), ())
+        monkeypatch.setattr("specc.fitting.fit.diagnose", lambda *_: structure)
     spec, run = drawn(tmp_path, form), whirled(tmp_path / "run.csv", other_whirl)
 
     found = specc.fit(run, spec)

@@ -1,4 +1,7 @@
-"""What was planted is what is named; the whole table is in tests/study/diagnosis.py."""
+"""What was planted is what is named; the whole table is in tests/study/diagnosis.py.
+
+The Husky without its delays is in tests/specc/test_fit.py.
+"""
 
 import re
 from pathlib import Path
@@ -10,9 +13,7 @@ from tests.study.diagnosis import Row, diagnosed, is_right, named, program_of, r
 from verifier.report.diagnosis import CandidateKind, Told
 from verifier.traces.read import read_trace
 
-RECORDINGS = Path(__file__).parents[3] / "specs" / "recordings"
-HUSKY = RECORDINGS / "husky" / "husky.mcap"
-SCITOS = RECORDINGS / "scitos" / "wall_following.csv"
+SCITOS = Path(__file__).parents[3] / "specs" / "recordings" / "scitos" / "wall_following.csv"
 SOME = (
     "nothing",
     "dead zone 4 cm",
@@ -72,23 +73,3 @@ def test_what_departs_clearly_but_may_is_told_with_its_size() -> None:
     assert found.told is Told.NO_DIFFERENCE
     assert found.candidates == ()
     assert re.match(r"left departs by 0\.0\d+ m, which 0\.1 m allow", found.sentences[0])
-
-
-@pytest.mark.slow
-def test_the_husky_without_delays_is_told_to_log_its_speed_and_its_gyro_late(
-    tmp_path: Path,
-) -> None:
-    text = (HUSKY.parents[2] / "husky_drive.yaml").read_text(encoding="utf-8")
-    spec = tmp_path / "husky.yaml"
-    spec.write_text(re.sub(r", delay: [0-9.]+ s", "", text), encoding="utf-8")
-    program = specc.load_program(spec)
-
-    found = diagnosed(program, read_trace(HUSKY, program, "auto"))
-
-    taken = {each.label: each for each in found.candidates if each.is_taken}
-    assert taken.keys() == {"late log of speed", "late log of turn"}
-    assert all(each.kind is CandidateKind.LATE_LOG for each in taken.values())
-    assert taken["late log of speed"].numbers[0].value == pytest.approx(-0.5, abs=0.06)
-    assert taken["late log of turn"].numbers[0].value == pytest.approx(-0.1, abs=0.06)
-    (scale,) = (each for each in found.refitted if each.name == "turn_scale")
-    assert scale.interval.low < 0.944 < scale.interval.high
