@@ -6,7 +6,7 @@ from typing import Final
 
 from runtime.program import Binding, Program
 from specc.fitting.aims import Aim, AnyAim, UnitAim
-from verifier.diagnosis.candidates.slips import slips_of
+from verifier.diagnosis.candidates.slips import slips_of, unit_read
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.report.diagnosis import Candidate, CandidateKind, ParameterKind, Refitted
 
@@ -79,12 +79,13 @@ def _mended(
         path = ("trace", name, "scale")
         scale = -binding.scale
         return Aim(path, f"scale of {name}", scale, 0.0, "1", 1.0, candidate.sentence)
-    slip = next((s for s in slips_of(binding.unit) if candidate.label.startswith(s.words)), None)
+    own = parts_of(program)[name].unit
+    slips = slips_of(unit_read(own, binding))
+    slip = next((each for each in slips if candidate.label.startswith(each.words)), None)
     if slip is not None and slip.written:
         path = ("trace", name, "unit")
         return UnitAim(path, f"unit of {name}", slip.written, candidate.sentence)
     if slip is not None and slip.factor == 1.0:
-        own = parts_of(program)[name].unit
         offset = binding.offset + slip.offset
         path, what = ("trace", name, "offset"), f"offset of {name}"
         return Aim(path, what, offset, 0.0, own.text, own.scale, candidate.sentence)

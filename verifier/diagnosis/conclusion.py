@@ -5,22 +5,32 @@ from typing import Final
 from verifier.diagnosis import sentences
 from verifier.diagnosis.candidates.inputs import DELAY
 from verifier.diagnosis.naming import label_of
-from verifier.diagnosis.selection import Selection, Step, Tried
+from verifier.diagnosis.selection import PLIANT, Selection, Step, Tried
 from verifier.report.diagnosis import (
     Candidate,
     CandidateKind,
     DepartureAfter,
     Diagnosis,
     DifferingRegion,
+    FittedNumber,
+    ParameterKind,
     Refitted,
     Told,
 )
-from verifier.report.report import Report, Standing
+from verifier.report.report import Interval, Report, Standing, Verdict
 
 SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
 
 CLEARLY: Final = 0.25
 """A departure that is surely beyond this share of its tolerance is told, though it is allowed."""
+OF_SENSORS: Final = (ParameterKind.SENSOR_OFFSET, ParameterKind.SENSOR_SCALE)
+LONG: Final = 3
+"""So many explanations, or more, deserve doubt."""
+MISREAD: Final = "the log is not what the spec takes it for:"
+LONG_CHAIN: Final = (
+    "no single candidate explains it; together these do, but one cause that was not tried can look"
+    " like them:"
+)
 PARTLY: Final = 0.6
 """What explains less than this share of the error beyond noise is no explanation."""
 
@@ -52,10 +62,13 @@ def concluded(
     if not taken:
         return _unexplained(after, differs, report)
     told = _told(selection, share, taken, departs, differs)
-    said = [_opening(told, share, taken)]
+    is_passed = report.verdict is Verdict.PASS
+    opening = _opening(told, share, taken, is_over=bool(departs), is_passed=is_passed)
+    is_misread = not selection.taken and not departs
+    said = [f"{MISREAD} {taken[0].label}" if is_misread else opening]
     said += [each.sentence for each in taken]
     for step in selection.taken:
-        said += _in_other_words(step, candidates)
+        said += _in_other_words(step, candidates, is_only=len(taken) == 1)
         rivals = [_name(each) for each in step.alike if each.matters]
         if rivals:
             said.append(f"{_name(step.tried[0])}: {sentences.either(rivals)}")
@@ -89,13 +102,35 @@ def _is_open(step: Step) -> bool:
     return any(each.matters for each in step.alike)
 
 
-def _in_other_words(step: Step, candidates: tuple[Candidate, ...]) -> list[str]:
-    """What leaves the same trace as a delay: another delay, of what stands on the other side."""
-    if step.tried[0].effect.label.startswith(DELAY):
-        labels = {_name(each) for each in step.same if each.effect.label.startswith(DELAY)}
-        said = [each.sentence.split(";")[0] for each in candidates if each.label in labels]
-        return [sentences.in_other_words(said)] if said else []
-    return []
+def _in_other_words(step: Step, candidates: tuple[Candidate, ...], *, is_only: bool) -> list[str]:
+    """What leaves the same trace; of sensors first, since these are mended in `trace:`.
+
+    Of a delay, only other delays: of what stands on the other side.
+    """
+    head = step.tried[0]
+    found = [each for each in step.same if each.matters and each.effect.kind not in PLIANT]
+    if head.effect.label.startswith(DELAY):
+        found = [each for each in found if each.effect.label.startswith(DELAY)]
+    found.sort(key=_rank)
+    told = {each.label: each.sentence.split(";")[0] for each in candidates}
+    said = sentences.in_other_words([told.get(_name(each)) or _said(each) for each in found])
+    return [said if is_only else f"{_name(head)}: {said}"] if found else []
+
+
+def _rank(tried: Tried) -> int:
+    kind = tried.effect.parameter
+    return OF_SENSORS.index(kind) if kind in OF_SENSORS else len(OF_SENSORS)
+
+
+def _said(tried: Tried) -> str:
+    """The clause that names it, its numbers without their doubt."""
+    count = len(tried.effect.numbers)
+    values = tried.fitted.values[len(tried.fitted.values) - count :]
+    numbers = tuple(
+        FittedNumber(n.name, n.unit, n.neutral, value, Interval(value, value))
+        for n, value in zip(tried.effect.numbers, values, strict=True)
+    )
+    return sentences.of_candidate(tried.effect, values, numbers)
 
 
 def _name(tried: Tried) -> str:
@@ -103,17 +138,22 @@ def _name(tried: Tried) -> str:
     return label_of(tried.effect, tried.fitted.values[len(tried.fitted.values) - count :])
 
 
-def _opening(told: Told, share: float, taken: list[Candidate]) -> str:
+def _opening(
+    told: Told, share: float, taken: list[Candidate], *, is_over: bool, is_passed: bool
+) -> str:
+    """is_over: something still departs by more than is allowed. is_passed: nothing ever did."""
     names = ", ".join(each.label for each in taken)
-    match told:
-        case Told.SAME_STRUCTURE:
-            return f"same structure, other numbers: {names}"
-        case _ if share < PARTLY:
-            return f"no candidate explains the departure well; the best is {names}"
-        case Told.CANNOT_TELL:
-            return f"several explanations are as good; the first is {names}"
-        case _:
-            return f"the structure differs: {names}"
+    is_long = len(taken) >= LONG and told is Told.STRUCTURE_DIFFERS
+    cases = (
+        (share < PARTLY, "no candidate explains the departure well; the best is"),
+        (is_over, "no candidate explains all of the departure; the best is"),
+        (told is Told.CANNOT_TELL, "several explanations are as good; the first is"),
+        (is_passed, "what differs is allowed; it would be less with"),
+        (is_long, LONG_CHAIN),
+        (told is Told.SAME_STRUCTURE, "same structure, other numbers:"),
+    )
+    said = next((words for holds, words in cases if holds), "the structure differs:")
+    return f"{said} {names}"
 
 
 def _unexplained(

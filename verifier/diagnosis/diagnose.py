@@ -15,8 +15,10 @@ from verifier.diagnosis.candidates.clocks import effects_on_clocks
 from verifier.diagnosis.candidates.inputs import effects_on_inputs
 from verifier.diagnosis.candidates.rates import effects_on_rates
 from verifier.diagnosis.candidates.regions import effects_on_regions
+from verifier.diagnosis.candidates.terms import effects_of_terms
 from verifier.diagnosis.conclusion import PARTLY, concluded, nothing_to_tell
 from verifier.diagnosis.guards import with_guards
+from verifier.diagnosis.leftover import Bench
 from verifier.diagnosis.parameters import effect_of, parameters_of
 from verifier.diagnosis.profiled import setting_of
 from verifier.diagnosis.refitting import refitted
@@ -55,11 +57,10 @@ def _of_states(
     program: Program, fidelity: Fidelity, trace: Trace, study: Study | None, report: Report
 ) -> Diagnosis:
     """Why states end elsewhere than predicted."""
-    if study is None:
-        return _of_unjudged(program, fidelity, trace, report)
-    scene = scene_of(program, study)
-    if scene.windows < FEWEST:
-        return nothing_to_tell(scene.windows)
+    scene = None if study is None else scene_of(program, study)
+    if study is None or scene is None or scene.windows < FEWEST:
+        windows = 0 if scene is None else scene.windows
+        return _of_unjudged(program, fidelity, trace, report, windows)
     selection = select(scene, effects_of(scene, report.verdict), fidelity.tolerance)
     if report.verdict is Verdict.PASS and selection.share(scene) < PARTLY:
         selection = selection.without()
@@ -73,22 +74,27 @@ def _of_states(
 def effects_of(scene: Scene, verdict: Verdict) -> tuple[Effect, ...]:
     """All that is tried, what is preferred among equals first.
 
-    Parts of the region are looked at only where something is amiss: there are many.
+    Further terms and parts of the region are looked at only where something is amiss: there are
+    many.
     """
+    is_passed = verdict is Verdict.PASS
     parameters = parameters_of(scene.program, scene.needs)
     return (
         *(effect_of(each) for each in parameters),
         *effects_on_inputs(scene),
         *effects_on_clocks(scene),
         *effects_on_rates(scene),
-        *(() if verdict is Verdict.PASS else effects_on_regions(scene)),
+        *(() if is_passed else (*effects_of_terms(scene), *effects_on_regions(scene))),
     )
 
 
-def _of_unjudged(program: Program, fidelity: Fidelity, trace: Trace, report: Report) -> Diagnosis:
+def _of_unjudged(
+    program: Program, fidelity: Fidelity, trace: Trace, report: Report, windows: int
+) -> Diagnosis:
+    """Where too little could be compared as the trace was read: read otherwise, if that helps."""
     found = reread(program, fidelity, trace, None, None)
     if not found or found[0].gain < CLEAR or found[0].scene.windows < FEWEST:
-        return nothing_to_tell(0)
+        return nothing_to_tell(windows)
     best = found[0]
     selection = select(best.scene, effects_of(best.scene, report.verdict), fidelity.tolerance)
     return _told(program, fidelity, best.scene, best.study, selection, report, best)
@@ -128,10 +134,16 @@ def _told(
     units: dict[str, Unit] = report.units
     after = departures(results, report)
     differs = regions(results, units)
-    found = candidates_of(scene, selection, report.confidence)
+    found = candidates_of(
+        Bench(scene, study, fidelity),
+        selection,
+        report.confidence,
+        with_others=report.verdict is not Verdict.PASS,
+    )
     share = selection.share(scene) if best is None else 1.0
     if best is not None:
-        found = (reading_of(program, best, was_judged=bool(report.variables)), *found)
+        was_judged = bool(report.variables)
+        found = (reading_of(program, best, selection, fidelity, was_judged=was_judged), *found)
     moved = told_of(numbers)
     told, sentences = concluded(selection, share, found, moved, after, differs, report)
     if told is Told.NO_DIFFERENCE:

@@ -7,7 +7,7 @@ import numpy as np
 
 from runtime.program import Binding, Kind, Program, State, Unit
 from verifier.diagnosis.altered import Altered, Effect, Number, Values
-from verifier.diagnosis.candidates.slips import Slip, slips_of
+from verifier.diagnosis.candidates.slips import Slip, slips_of, unit_read
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.loosened import ONE, TIME_SCALE, gain_of, offset_of
 from verifier.fidelity.stretches.needs import Input, Needs, names_read, parts_of
@@ -207,7 +207,7 @@ def _of_inputs(program: Program, needs: Needs, bindings: dict[str, Binding]) -> 
             float(np.ptp(given.series.values)),
             "" if binding is None else binding.origin,
         )
-        slips = slips_of(units[given.name] if binding is None else binding.unit)
+        slips = slips_of(unit_read(units[given.name], binding))
         lowest = 0.0 if given.low >= 0.0 or given.high <= 0.0 else -np.inf
         found += [replace(gain, low=lowest, slips=slips), offset]
     return found
@@ -250,7 +250,7 @@ def _of_sensor(state: State, binding: Binding | None) -> list[Parameter]:
     origin = state.origin if binding is None else binding.origin
     width = 0.1 * (state.high - state.low)
     scale, offset = _pair(kinds, state.name, state.unit, width, origin)
-    slips = slips_of(state.unit if binding is None else binding.unit)
+    slips = slips_of(unit_read(state.unit, binding))
     return [offset] if state.kind is Kind.PERIODIC else [replace(scale, slips=slips), offset]
 
 

@@ -4,15 +4,15 @@ from typing import Final
 
 import numpy as np
 
-from runtime.program import Program, Unit
+from runtime.program import Fidelity, Program, Unit
 from verifier.diagnosis import sentences
 from verifier.diagnosis.candidates.inputs import origin_of
 from verifier.diagnosis.candidates.readings import Reading
 from verifier.diagnosis.fitting import intervals_of
+from verifier.diagnosis.leftover import Bench, leaves
 from verifier.diagnosis.naming import kind_of, label_of
 from verifier.diagnosis.refitting import Number
 from verifier.diagnosis.rereading import Reread
-from verifier.diagnosis.scene import Scene
 from verifier.diagnosis.selection import Selection, Step, Tried
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.report.diagnosis import (
@@ -91,30 +91,37 @@ def regions(
     return tuple(told.values())
 
 
-def candidates_of(scene: Scene, selection: Selection, confidence: float) -> tuple[Candidate, ...]:
-    """Those that were taken, then the best of those that were not."""
+def candidates_of(
+    bench: Bench, selection: Selection, confidence: float, *, with_others: bool
+) -> tuple[Candidate, ...]:
+    """Those that were taken, then the best of those that were not, if these are wanted."""
     taken = selection.taken
     found = []
     before: list[str] = []
     for step in taken:
-        found.append(_candidate(scene, selection, step, step.tried[0], tuple(before), confidence))
+        found.append(_candidate(bench, selection, step, step.tried[0], tuple(before), confidence))
         before.append(found[-1].label)
     named = {each.label for each in found}
     rest = selection.steps[-1].tried if not taken else taken[0].tried[1:]
-    for tried in rest:
-        other = _candidate(scene, selection, None, tried, (), confidence)
-        is_new = other.label not in named and len(found) < len(taken) + SHOWN
-        if is_new and tried.matters and tried.gain > 0.0 and tried.share > WORTH:
+    for tried in rest if with_others else ():
+        is_worth = tried.matters and tried.gain > 0.0 and tried.share > WORTH
+        if not is_worth or len(found) >= len(taken) + SHOWN:
+            continue
+        other = _candidate(bench, selection, None, tried, (), confidence)
+        if other.label not in named:
             named.add(other.label)
             found.append(other)
     return tuple(found)
 
 
-def reading_of(program: Program, best: Reread, *, was_judged: bool) -> Candidate:
+def reading_of(
+    program: Program, best: Reread, selection: Selection, fidelity: Fidelity, *, was_judged: bool
+) -> Candidate:
     """A reading of the trace as the first candidate; was_judged: before it was read so."""
     reading = best.reading
     bindings = {binding.name: binding for binding in program.bindings}
     evidence = sentences.of_reading(reading, best.share, was_judged=was_judged)
+    left = leaves(Bench(best.scene, best.study, fidelity), selection.plain)
     return Candidate(
         kind=reading.kind,
         applies_to=reading.applies_to,
@@ -124,7 +131,8 @@ def reading_of(program: Program, best: Reread, *, was_judged: bool) -> Candidate
         is_taken=True,
         alike=(),
         origin=origin_of(bindings, reading.applies_to[0]),
-        sentence=f"{reading.words}; {evidence}",
+        sentence=f"{reading.words}; {evidence}{sentences.still(left, ())}",
+        leaves=left,
     )
 
 
@@ -142,7 +150,7 @@ def _mending(program: Program, reading: Reading) -> tuple[FittedNumber, ...]:
 
 
 def _candidate(
-    scene: Scene,
+    bench: Bench,
     selection: Selection,
     step: Step | None,
     tried: Tried,
@@ -150,7 +158,7 @@ def _candidate(
     confidence: float,
 ) -> Candidate:
     """With the numbers of the last fit where it was taken, of its own fit where not."""
-    effect = tried.effect
+    effect, scene = tried.effect, bench.scene
     fitted = selection.final if step is not None else tried.fitted
     intervals = intervals_of(scene, fitted, confidence)
     labels = [each.label for each in fitted.effects]
@@ -170,6 +178,8 @@ def _candidate(
         )
     )
     said = sentences.of_candidate(effect, values, numbers)
+    left = leaves(bench, tried.fitted)
+    evidence = f"{sentences.evidence(tried.share, before)}{sentences.still(left, before)}"
     return Candidate(
         kind=kind_of(effect, values),
         applies_to=effect.applies_to,
@@ -179,5 +189,6 @@ def _candidate(
         is_taken=step is not None,
         alike=alike,
         origin=effect.origin,
-        sentence=f"{said}; {sentences.evidence(tried.share, before)}",
+        sentence=f"{said}; {evidence}",
+        leaves=left,
     )

@@ -40,6 +40,10 @@ CLEAR: Final = 6.0
 """A candidate gains at least so much held-out log-likelihood: many are tried."""
 CLOSE: Final = 4.0
 """Candidates that gain as much but for this explain as well."""
+ROUGH: Final = 0.95
+"""What explains less than this share is not all that there is;"""
+ALIKE: Final = 0.02
+"""and what explains less by no more than this is as good."""
 HINT: Final = 1.5
 """A linear forecast of the gain below this is not followed up."""
 MATTERS: Final = 0.05
@@ -49,6 +53,8 @@ SAME: Final = 0.02
 
 SLIPS: Final = (CandidateKind.SIGN, CandidateKind.UNIT_SLIP)
 """Among words for the same, these say most."""
+PLIANT: Final = (CandidateKind.REGION, CandidateKind.TERM)
+"""These can imitate much."""
 
 
 @final
@@ -278,20 +284,27 @@ def _matters(
 def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:
     """Best first; of those that say the same, the one that stands first in the preference.
 
-    A part of the region can imitate much, and yields to all that explains as well.
+    A part of the region or a further term can imitate much, and yields to all that explains as
+    well.
     """
     order = sorted(tried, key=lambda t: -t.gain)
-    whole = [t for t in order if t.effect.kind is not CandidateKind.REGION]
-    yields = order[0].effect.kind is CandidateKind.REGION and whole
+    whole = [t for t in order if t.effect.kind not in PLIANT]
+    yields = order[0].effect.kind in PLIANT and whole
     top = whole[0] if yields and order[0].gain - whole[0].gain < CLOSE else order[0]
     same = [t for t in tried if t is top or _are_same(scene, t, top, base)]
     slips = [t for t in same if kind_of(t.effect, _own_values(t)) in SLIPS]
     head = (slips or same)[0]
-    alike = [t for t in order if t not in same and top.gain - t.gain < CLOSE]
+    alike = [t for t in order if t not in same and _is_as_good(t, top)]
     rest = [t for t in order if t is not head]
     is_taken = head.gain >= CLEAR and head.matters and _is_sure(scene, head)
     others = tuple(t for t in same if t is not head)
     return Step((head, *rest), others, tuple(alike), is_taken=is_taken)
+
+
+def _is_as_good(other: Tried, top: Tried) -> bool:
+    """Where neither is the whole truth, a likelihood says little; shares that are alike do."""
+    is_rough = top.share < ROUGH and other.share > top.share - ALIKE
+    return top.gain - other.gain < CLOSE or is_rough
 
 
 def _own_values(tried: Tried) -> Values:

@@ -64,6 +64,8 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
     verb = "act" if len(effect.applies_to) > 1 else "acts"
     if kind is CandidateKind.REGION:
         return _in_a_region(effect, numbers, size)
+    if kind is CandidateKind.TERM:
+        return _with_a_term(effect, numbers[0])
     said = {
         CandidateKind.DEAD_TIME: f"{subject} {verb} {size} later than the spec says",
         CandidateKind.LATE_LOG: f"the log tells {names} {size} {side}",
@@ -89,6 +91,12 @@ def _in_a_region(effect: Effect, numbers: tuple[FittedNumber, ...], size: str) -
     return f"the rate of {rate} is {size} {way} where {name} is {side} {border}"
 
 
+def _with_a_term(effect: Effect, found: FittedNumber) -> str:
+    rate, words = effect.applies_to[0], effect.label.removeprefix("term ").partition(" in the ")[0]
+    size = with_doubt(found.value, found.interval, found.unit.scale)
+    return f"the rate of {rate} has a further term {size}{suffix(found.unit)} times {words}"
+
+
 def of_scalar(effect: Effect, found: FittedNumber) -> str:
     """A number of the spec, a gain or an offset."""
     value = f"{with_doubt(found.value, found.interval, found.unit.scale)}{suffix(found.unit)}"
@@ -103,7 +111,14 @@ def evidence(share: float, before: tuple[str, ...]) -> str:
 
 def in_other_words(said: list[str]) -> str:
     """Explanations that leave the very same trace."""
-    return f"in other words, which leave the same trace: {', or '.join(said)}"
+    more = f", or {len(said) - MOST} others" if len(said) > MOST else ""
+    return f"in other words, which leave the same trace: {', or '.join(said[:MOST])}{more}"
+
+
+def still(left: str, before: tuple[str, ...]) -> str:
+    """What is beyond a tolerance even so; nothing where nothing is."""
+    how = "with those before it" if before else "taken alone"
+    return f"; {how}, it still leaves {left}" if left else ""
 
 
 def of_reading(reading: Reading, share: float, *, was_judged: bool) -> str:

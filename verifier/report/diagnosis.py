@@ -136,7 +136,8 @@ class Candidate:
 
     applies_to: the variables, inputs or topics. label: a short name, such as `dead time of turn`.
     is_taken: the diagnosis names it. alike: labels of the candidates that explain as well.
-    origin: where in the YAML it would be mended.
+    origin: where in the YAML it would be mended. leaves: what it leaves beyond a tolerance, with
+    those that were taken before it; empty where nothing is.
     """
 
     kind: CandidateKind
@@ -148,6 +149,7 @@ class Candidate:
     alike: tuple[str, ...]
     origin: str
     sentence: str
+    leaves: str = ""
 
 
 @final

@@ -1,6 +1,7 @@
 """The sections of an examination as plain text: their sentences, and short tables beside them."""
 
-from verifier.report.diagnosis import Diagnosis, FittedNumber
+from runtime.program import Unit
+from verifier.report.diagnosis import Candidate, Diagnosis, FittedNumber
 from verifier.report.examination import Examination
 from verifier.report.features import FeatureNumber, Features
 from verifier.report.layout import INDENT, bullets, section, table
@@ -8,7 +9,7 @@ from verifier.report.limits import Limits
 from verifier.report.scores import Scores, VariableScores
 from verifier.report.switching import Switching
 from verifier.report.why import untaken, why
-from verifier.report.wording import number, percent, quantity, shown
+from verifier.report.wording import digits_of, number, percent, quantity, shown, span
 
 MOST_CANDIDATES = 5
 
@@ -32,7 +33,7 @@ def _diagnosis(diagnosis: Diagnosis, switching: Switching | None) -> str:
         (
             each.label,
             ", ".join(_number(n) for n in each.numbers),
-            f"explains {percent(max(each.evidence.share, 0.0))} of what departs",
+            _worth(each),
         )
         for each in others
     ]
@@ -41,6 +42,13 @@ def _diagnosis(diagnosis: Diagnosis, switching: Switching | None) -> str:
     if rows:
         blocks.append(f"{INDENT}tried instead of the first:\n{table(rows, INDENT)}")
     return section(f"why: {title}", blocks)
+
+
+def _worth(candidate: Candidate) -> str:
+    """How much it explains, and what it would leave."""
+    share = percent(max(candidate.evidence.share, 0.0))
+    left = f", leaves {candidate.leaves}" if candidate.leaves else ""
+    return f"explains {share} of the error beyond noise{left}"
 
 
 def _number(each: FittedNumber) -> str:
@@ -91,8 +99,9 @@ def _robot(each: FeatureNumber) -> str:
     if each.robot is None:
         return "-"
     interval = each.robot.interval
-    low, high = shown(interval.low, each.unit), shown(interval.high, each.unit)
-    return f"{shown(each.robot.value, each.unit)} ({low} to {high})"
+    ends = (interval.low / each.unit.scale, interval.high / each.unit.scale)
+    value = number(each.robot.value / each.unit.scale, digits_of(*ends))
+    return f"{value} ({span(interval.low, interval.high, Unit('', each.unit.scale))})"
 
 
 def _limits(limits: Limits) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 from runtime.arrays import Array
 from runtime.program import Kind, Program, Unit
-from verifier.diagnosis.candidates.slips import Slip, slips_of
+from verifier.diagnosis.candidates.slips import Slip, slips_of, unit_read
 from verifier.fidelity.stretches.needs import Needs, parts_of
 from verifier.report.diagnosis import CandidateKind
 from verifier.traces.trace import Trace
@@ -62,8 +62,8 @@ def readings_of(program: Program, needs: Needs, trace: Trace) -> tuple[Reading, 
 
 def read_units(program: Program) -> dict[str, Unit]:
     """In which unit each variable of the log was read."""
-    bound = {each.name: each.unit for each in program.bindings if each.path}
-    return {name: part.unit for name, part in parts_of(program).items()} | bound
+    bound = {each.name: each for each in program.bindings}
+    return {n: unit_read(part.unit, bound.get(n)) for n, part in parts_of(program).items()}
 
 
 def _turned(trace: Trace, name: str) -> Reading:

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Final, final
 
-from runtime.program import Unit
+from runtime.program import Binding, Unit
 from spec_schema.dimension import Dimension
 from spec_schema.units import UnitFault, parse_unit
 
@@ -82,6 +82,22 @@ def slips_of(unit: Unit) -> tuple[Slip, ...]:
     if text == "K":
         found += [Slip(f"{n} for kelvin", f, offset, "") for n, (f, offset) in ZEROES.items()]
     return tuple(found)
+
+
+def unit_read(own: Unit, binding: Binding | None) -> Unit:
+    """The unit in which a variable of unit `own` is read from a log; an angle's is said to be one.
+
+    >>> unit = Unit("1/s", 1.0)
+    >>> unit_read(Unit("deg/s", 0.0175), Binding("w", "/w", unit, 0, 1, 0, None, (), "")).text
+    'rad/s'
+    """
+    if binding is None or not binding.path:
+        return own
+    read = binding.unit
+    if not ANGULAR.search(own.text) or ANGULAR.search(read.text):
+        return read
+    is_rate = "rpm" in own.text or "/s" in own.text
+    return Unit("rad/s" if is_rate else "rad", read.scale)
 
 
 def slip_by(factor: float, slips: tuple[Slip, ...]) -> Slip | None:
