@@ -8,6 +8,13 @@ from verifier.report.report import Report, Standing, Verdict
 from verifier.report.switching import Switching
 from verifier.report.wording import listed, quantity
 
+WITHOUT_SIZE: Final = {
+    CandidateKind.SIGN,
+    CandidateKind.SWAPPED_AXES,
+    CandidateKind.UNIT_SLIP,
+    CandidateKind.REGION,
+}
+"""Explanations that say all without their number."""
 MOST: Final = 3
 """So many explanations are named, at most."""
 
@@ -36,12 +43,17 @@ def _of_diagnosis(report: Report, diagnosis: Diagnosis) -> list[str]:
                 " it); else mend the robot"
             )
         ]
-    return [f"settle first what explains it: {listed([each.label for each in taken])}"]
+    return [f"settle first what explains it: {listed([_number(each) for each in taken])}"]
 
 
 def _number(candidate: Candidate) -> str:
+    """An explanation with its size, where it has one."""
+    if not candidate.numbers or candidate.kind in WITHOUT_SIZE:
+        return candidate.label
     number = candidate.numbers[0]
-    return f"{candidate.label} = {quantity(number.value, number.unit)}"
+    size = quantity(abs(number.value) if number.name == "delay" else number.value, number.unit)
+    is_parameter = candidate.kind is CandidateKind.PARAMETER
+    return f"{candidate.label} = {size}" if is_parameter else f"{candidate.label} ({size})"
 
 
 def _of_switching(switching: Switching | None) -> list[str]:
