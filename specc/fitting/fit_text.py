@@ -9,6 +9,8 @@ from verifier.report.report import Report, Verdict
 
 MOST: Final = 12
 """So many moves are listed; the diff shows all."""
+FORMAT: Final = 1
+"""Counts up when a reader of the record would have to change."""
 OPENINGS: Final = {
     Outcome.MOVED: "moved",
     Outcome.NOTHING_TO_MOVE: "nothing is to be moved",
@@ -37,6 +39,7 @@ def fit_text(fitted: Fitted) -> str:
 def fit_record(fitted: Fitted, *, is_written: bool) -> dict[str, object]:
     """The same as numbers and texts."""
     return {
+        "format": FORMAT,
         "spec": str(fitted.path),
         "found": fitted.how,
         "outcome": str(fitted.outcome),

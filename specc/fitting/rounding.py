@@ -4,14 +4,15 @@ import math
 from typing import Final
 
 MOST: Final = 12
-"""Decimals, at most."""
+"""A value that is known to more decimals counts as exact."""
 
 
 def rounded(value: float, half: float) -> str:
-    """The value, with the digits that matter beside `half`, half the width of its interval.
+    """The value, to the last digit that matters beside `half`, half the width of its interval.
 
-    The doubt keeps one digit, or two where the first of them is a 1, so that rounding moves the
-    value by at most a quarter of `half`. An exact value (`half` 0) keeps all its digits.
+    That is the place of the first digit of `half`, or of its second where `half` begins with a 1
+    (1 up to 1.95). Rounding then moves the value by no more than 0.26 of `half`. An exact value
+    (`half` 0) keeps all its digits, and so does one of which nothing is known (infinite `half`).
 
     >>> rounded(0.45967, 0.0101), rounded(1234.5, 30.0), rounded(-1.0, 0.0), rounded(2.0004, 0.02)
     ('0.46', '1230', '-1', '2')
