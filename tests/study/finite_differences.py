@@ -4,8 +4,8 @@ Such a check differentiates the measured states and compares the rates with the 
 measured states and inputs. It knows no tolerance: it looks for any difference. Noise in the states
 is in the rates on both sides, so that a faithful robot differs, too. A check is therefore set by
 faithful robots under the same conditions, hundreds of them, which a lab would have to simulate: it
-gives alarm where it is farther from these than 95 % of them are. Only the last two do without, by the interval of
-the regression, as a lab would.
+gives alarm where it is farther from these than 95 % of them are. Only the last two do without, by
+the interval of the regression, as a lab would.
 """
 
 from dataclasses import dataclass
