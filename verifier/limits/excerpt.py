@@ -12,10 +12,14 @@ from verifier.fidelity.stretches.spans import contains
 from verifier.report.wording import seconds
 from verifier.traces.trace import Series, Trace
 
+WHOLE_WINDOWS: Final = 320
+WHOLE_SAMPLES: Final = 60_000
+"""Of all series together. A trace with no more is taken whole: then what is said to be caught
+fails, and what is said not to be does not, if it is planted into the recording itself."""
 MOST_WINDOWS: Final = 79
-"""Of 40 horizons: longer traces catch hardly smaller faults, which must exceed the tolerance."""
+"""Of 40 horizons: what is taken of longer traces."""
 MOST_SAMPLES: Final = 10_000
-"""Of all series together, unless that would be less than the fewest windows."""
+"""Likewise, unless that would be less than the fewest windows."""
 FEWEST_WINDOWS: Final = 39
 MOVED: Final = 10.0
 
@@ -26,27 +30,32 @@ def excerpt_of(trace: Trace, fidelity: Fidelity, study: Study) -> tuple[Trace, s
     It is as long as it takes to hold enough windows: those of a robot that is judged now and then
     only are far apart.
     """
-    windows = study.plan.windows
-    kept = _affordable(study)
-    if kept >= len(windows.times):
+    windows, samples = study.plan.windows, _samples(study)
+    kept = _affordable(study, samples)
+    is_short = len(windows.times) <= WHOLE_WINDOWS and samples <= WHOLE_SAMPLES
+    if is_short or kept >= len(windows.times):
         return trace, ""
     first = _liveliest(fidelity, study, kept)
     start, end = windows.times[first], windows.times[first + kept - 1] + windows.horizon
     series = {name: _part(each, start, end) for name, each in trace.series.items()}
     begin, finish = study.segments.whole
     told = (
-        f"faults were planted into {seconds(end - start)} of the {seconds(finish - begin)} only"
-        f" (from {seconds(start - begin)} on, where most moves); the whole trace may show"
-        " smaller ones"
+        f"all sizes are those that a recording of {seconds(end - start)} would show: of this one,"
+        f" {seconds(finish - begin)} long, only the part from {seconds(start - begin)} on, where"
+        " most moves, was taken; the whole may show smaller faults, or not all of these"
     )
     return replace(trace, series=series), told
 
 
-def _affordable(study: Study) -> int:
-    """How many windows."""
+def _samples(study: Study) -> int:
+    """How many samples of all series are judged."""
     needs, spans = study.plan.needs, study.segments.spans
     series = [*needs.series, *(each.series for each in needs.inputs if each.series is not None)]
-    samples = sum(int(np.sum(contains(spans, each.times))) for each in series)
+    return sum(int(np.sum(contains(spans, each.times))) for each in series)
+
+
+def _affordable(study: Study, samples: int) -> int:
+    """How many windows."""
     share = MOST_SAMPLES / max(samples, 1)
     return min(max(int(share * len(study.plan.windows.times)), FEWEST_WINDOWS), MOST_WINDOWS)
 

@@ -16,11 +16,11 @@ from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import Input, held, names_read, parts_of
 from verifier.report.limits import Fault
 
-RATIO: Final = 1.25
+RATIO: Final = 1.3
 """From one size to the next: how precisely the smallest one is known."""
-ABOVE: Final = 14
+ABOVE: Final = 12
 """Rungs above the guess."""
-RUNGS: Final = 26
+RUNGS: Final = 22
 LARGEST_GAIN: Final = 1.0
 """A rate that is doubled, or that is not there at all."""
 FEW_CHANGES: Final = 2

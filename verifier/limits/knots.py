@@ -15,11 +15,14 @@ from verifier.fidelity.shooting.grid import Grid
 from verifier.fidelity.shooting.jumps import switch_knots
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import Input, held
+from verifier.fidelity.stretches.spans import length
 
 STEPS: Final = 40
 """At least so many steps to a horizon."""
-FINEST: Final = 400
+FINEST: Final = 100
 """And at most about so many."""
+JUST: Final = 1e-6
+"""So much of the horizon before a switch is a knot as well: what a guard resets, jumps."""
 
 
 @final
@@ -93,17 +96,25 @@ def _ticks(study: Study) -> tuple[Array, Booleans]:
 
 
 def _evenly(study: Study) -> tuple[Array, Booleans]:
-    """No step above a fortieth of the horizon, nor above those that the verdict needed."""
-    steps = np.diff(study.plan.model.grid.times)
-    horizon = study.plan.windows.horizon
+    """No step above a fortieth of the horizon; inputs that change less often, change at knots."""
+    horizon, steps = study.plan.windows.horizon, np.diff(study.plan.model.grid.times)
     least = max(np.quantile(steps, 0.9), horizon / FINEST) if len(steps) else np.inf
     step = min(horizon / STEPS, least)
-    switches = _switches(study)
+    after = _switches(study)
+    switches = np.concatenate([after, after - JUST * horizon, *_rare_changes(study, step)])
     parts = []
     for a, b in study.segments.spans:
         inner = switches[(switches > a) & (switches < b)]
         parts.append(np.union1d(np.linspace(a, b, int(np.ceil((b - a) / step)) + 1), inner))
     return _joined(parts)
+
+
+def _rare_changes(study: Study, step: float) -> list[Array]:
+    """When inputs change that do so in fewer than half of the steps."""
+    most = length(study.segments.spans) / step / 2.0
+    told = [each.series for each in study.plan.needs.inputs if each.series is not None]
+    changes = [s.times[1:][np.diff(s.values) != 0.0] for s in told]
+    return [times for times in changes if len(times) < most]
 
 
 def _joined(parts: list[Array]) -> tuple[Array, Booleans]:

@@ -1,6 +1,6 @@
 """How far robots with planted faults would have been from where the robot was.
 
-All copies at once: L lanes, K knots, n states, p controls, D predicted states.
+All copies at once: L lanes, K knots, S steps, n states, p controls, D predicted states.
 """
 
 from dataclasses import dataclass
@@ -21,6 +21,16 @@ from verifier.report.limits import Fault
 FAR: Final = 0.25
 """A robot that left the domain, and is further away than this share of it, begins anew where the
 real one is."""
+SHORTEST: Final = 4
+LONGEST: Final = 64
+"""So many steps are integrated at once, more where that is"""
+EASY: Final = 8
+"""done in so many rounds,"""
+ROUNDS: Final = 66
+"""and never in more; where a field jumps, rounds may go on without end."""
+SETTLED: Final = 1e-7
+"""The last round changes deviations by no more than this share of the largest; those of a step map
+not at all, which takes no more rounds than there are steps."""
 
 
 @final
@@ -48,17 +58,16 @@ class _Robots:
     late: Array
     driven: Integers
 
-    def moved(self, states: Array, controls: Array, k: int) -> Array:
-        """Their rates (L, D) (of a step map: their steps) at states (L, n), in step k."""
-        states = np.array(states)
-        controls = np.tile(controls, (len(states), 1))
-        n = states.shape[1]
-        for array, first in ((states, 0), (controls, n)):
-            here = (self.columns >= first) & (self.columns < first + array.shape[1])
-            array[self.delayed[here], self.columns[here] - first] = self.late[here, k]
-        plain = _motion(self.flow, states, controls)
+    def moved(self, states: Array, controls: Array, part: slice) -> Array:
+        """Their rates (S, L, D) (of a step map: their steps) at states (S, L, n), in S steps."""
+        n = states.shape[-1]
+        every = np.empty((*states.shape[:2], n + controls.shape[-1]))
+        every[..., :n] = states
+        every[..., n:] = controls[:, None]
+        every[:, self.delayed, self.columns] = self.late[:, part].T
+        plain = _motion(self.flow, every[..., :n], every[..., n:])
         faulty: Array = plain * (1.0 + self.gain) + self.offset
-        return faulty[:, self.driven]
+        return faulty[..., self.driven]
 
 
 def integrated(study: Study, knots: Knots, lanes: tuple[Lane, ...]) -> tuple[Array, Integers]:
@@ -67,28 +76,62 @@ def integrated(study: Study, knots: Knots, lanes: tuple[Lane, ...]) -> tuple[Arr
     path = np.zeros((len(knots.times), len(lanes), len(robots.driven)))
     cuts = [np.empty((0, 2), dtype=np.int64)]
     real = _real_motion(robots, knots)
-    switches = set(switch_knots(robots.flow, knots.grid).tolist())
-    for k in range(len(knots.times) - 1):
+    switches = switch_knots(robots.flow, knots.grid)
+    ends = np.union1d(np.append(np.flatnonzero(knots.begins), len(knots.times)), switches)
+    k, most = 0, SHORTEST
+    while k < len(knots.times) - 1:
         if knots.begins[k + 1]:
+            k += 1
             continue
-        path[k + 1] = _stepped(robots, knots, real, path[k], k)
-        if k + 1 in switches:
-            path[k + 1] = _jumped(robots, knots, path[k + 1], k + 1)
-        lost = np.flatnonzero(_is_lost(study, knots.states[k + 1], path[k + 1]))
-        if len(lost):
-            path[k + 1, lost] = 0.0
-            cuts.append(np.column_stack([lost, np.full(len(lost), k + 1)]))
+        end = int(ends[np.searchsorted(ends, k, side="right")])
+        last = min(k + most, end if end in switches else end - 1)
+        path[k : last + 1], rounds = _block(robots, knots, real, path[k], slice(k, last))
+        if last in switches:
+            path[last] = _jumped(robots, knots, path[last], last)
+        lost = _is_lost(study, knots.states[k + 1 : last + 1], path[k + 1 : last + 1])
+        if np.any(lost):
+            # What follows in this block is integrated once more, from where a robot begins anew.
+            last = k + 1 + int(np.argmax(np.any(lost, axis=1)))
+            anew = np.flatnonzero(lost[last - k - 1])
+            path[last, anew] = 0.0
+            cuts.append(np.column_stack([anew, np.full(len(anew), last)]))
+        k = last
+        most = min(2 * most, LONGEST) if rounds <= EASY else max(most // 2, SHORTEST)
     return path, np.concatenate(cuts)
 
 
+def _block(
+    robots: _Robots, knots: Knots, real: Array, start: Array, part: slice
+) -> tuple[Array, int]:
+    """The deviations (S + 1, L, D) over S steps, from `start` (L, D), and in how many rounds.
+
+    The implicit midpoint rule (of a step map, its steps), for all steps at once: each round puts
+    in what the one before it gave (waveform relaxation; it ends, as Picard's iteration does).
+    """
+    steps = 1.0 if knots.is_map else np.diff(knots.times[part.start : part.stop + 1])[:, None, None]
+    places = (knots.states if knots.is_map else knots.middle)[part]
+    controls, plain = knots.controls[part], real[part][:, None]
+    path = np.tile(start, (len(places) + 1, 1, 1))
+    settled = 0.0 if knots.is_map else SETTLED
+    rounds, is_settled = 0, False
+    while rounds < ROUNDS and not is_settled:
+        rounds += 1
+        at = path[:-1] if knots.is_map else (path[:-1] + path[1:]) / 2.0
+        moved = robots.moved(_displaced(robots, places, at), controls, part)
+        found = np.concatenate([start[None], start + np.cumsum(steps * (moved - plain), axis=0)])
+        change = np.max(np.abs(found - path), initial=0.0)
+        path, is_settled = found, not change > settled * np.max(np.abs(found), initial=0.0)
+    return path, rounds
+
+
 def _is_lost(study: Study, states: Array, deviation: Array) -> Booleans:
-    """Which lanes (L,) are far from where the robot was, and out of the domain."""
+    """Which lanes (S, L) are far from where the robot was (S, n), and out of the domain."""
     lost = ~np.all(np.isfinite(deviation), axis=-1)
     for j, state in enumerate(study.plan.needs.driven):
         if state.kind is Kind.CONTINUOUS:
-            there = states[study.plan.needs.columns[j]] + deviation[:, j]
+            there = states[:, study.plan.needs.columns[j], None] + deviation[..., j]
             is_out = (there < state.low) | (there > state.high)
-            lost |= is_out & (np.abs(deviation[:, j]) > FAR * (state.high - state.low))
+            lost |= is_out & (np.abs(deviation[..., j]) > FAR * (state.high - state.low))
     return np.asarray(lost)
 
 
@@ -136,35 +179,21 @@ def _motion(flow: Flow, states: Array, controls: Array) -> Array:
 
 
 def _real_motion(robots: _Robots, knots: Knots) -> Array:
-    """What the spec says where the robot was: (2, K, D), at the knots and halfway to the next."""
-    at = [_motion(robots.flow, states, knots.controls) for states in (knots.states, knots.middle)]
-    return np.asarray(np.stack(at)[..., robots.driven])
-
-
-def _stepped(robots: _Robots, knots: Knots, real: Array, deviation: Array, k: int) -> Array:
-    """The deviation (L, D) one step later, by the midpoint rule (of a step map, by its step)."""
-
-    def change(place: Array, moved: Array, half: int) -> Array:
-        there = robots.moved(_displaced(robots, place, moved), knots.controls[k], k)
-        return np.asarray(there - real[half, k])
-
-    first = change(knots.states[k], deviation, 0)
-    if knots.is_map:
-        return np.asarray(deviation + first)
-    step = knots.times[k + 1] - knots.times[k]
-    return np.asarray(deviation + step * change(knots.middle[k], deviation + step / 2.0 * first, 1))
+    """What the spec says where the robot was (K, D): halfway to the next knot; of a map, at it."""
+    places = knots.states if knots.is_map else knots.middle
+    return _motion(robots.flow, places, knots.controls)[:, robots.driven]
 
 
 def _jumped(robots: _Robots, knots: Knots, deviation: Array, k: int) -> Array:
     """The deviation (L, D) after the switch at knot k: what is reset has none any more."""
-    states = _displaced(robots, knots.states[k], deviation)
+    states = _displaced(robots, knots.states[k : k + 1], deviation[None])[0]
     both = np.concatenate([knots.states[k : k + 1], states])
     after = jumped(robots.flow, knots.grid, both, np.full(len(both), k))
     return np.asarray((after[1:] - after[:1])[:, robots.driven])
 
 
-def _displaced(robots: _Robots, place: Array, moved: Array) -> Array:
-    """States (L, n): those at `place` (n,), the predicted ones moved by (L, D)."""
-    states = np.tile(place, (len(moved), 1))
-    states[:, robots.driven] += moved
+def _displaced(robots: _Robots, places: Array, moved: Array) -> Array:
+    """States (S, L, n): those at `places` (S, n), the predicted ones moved by (S, L, D)."""
+    states = np.repeat(places[:, None], moved.shape[1], axis=1)
+    states[..., robots.driven] += moved
     return states

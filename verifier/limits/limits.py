@@ -22,5 +22,5 @@ def limits_of(
     study, report: of the very trace (`verifier.fidelity.verify.judged`). found: its sensitivities
     where they are known already.
     """
-    caught, notes = smallest_caught(program, trace, report)
+    caught, notes = smallest_caught(program, trace, report, study=study)
     return Limits(what_is_not_told(program, study, found), caught, notes)

@@ -35,7 +35,10 @@ FINE: Final = 0.1
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Plantings:
-    """The deviation of every lane: `deviations` (K, L, D); cuts (c, 2): lane and knot."""
+    """The deviation of every robot's lane: `deviations` (K, L, D); cuts (c, 2): lane and knot.
+
+    A fault of a sensor leaves the robot where it was.
+    """
 
     study: Study
     knots: Knots
@@ -51,9 +54,6 @@ def plant(study: Study, lanes: tuple[Lane, ...]) -> Plantings:
     acting = tuple(lane for lane, moves in zip(lanes, moving, strict=True) if moves)
     deviations = np.zeros((len(knots.times), len(lanes), len(study.plan.needs.driven)))
     deviations[:, moving], cuts = integrated(study, knots, acting)
-    for i, lane in enumerate(lanes):
-        if lane.planned.fault is Fault.SENSOR and not lane.planned.is_input:
-            deviations[:, i, lane.planned.target] = lane.size
     cuts[:, 0] = np.flatnonzero(moving)[cuts[:, 0]]
     return Plantings(study, knots, lanes, deviations, cuts)
 
@@ -65,15 +65,15 @@ def copy_of(trace: Trace, plantings: Plantings, lane: int, rng: np.random.Genera
     gap = 1.01 * max(GAP_SECONDS, *(GAP_PERIODS * period_of(s.times) for s in needs.series))
     gaps = np.column_stack([starts, starts + gap])
     planned, size = plantings.lanes[lane].planned, plantings.lanes[lane].size
+    if planned.fault is Fault.SENSOR:
+        shown = trace.series[planned.variable]
+        wrong = replace(shown, values=shown.values + size)
+        return replace(trace, series=trace.series | {planned.variable: wrong})
     changed = {}
     for j, series in enumerate(needs.series):
         deviation = np.interp(series.times, knots.times, plantings.deviations[:, lane, j])
-        if planned.fault is not Fault.SENSOR:
-            deviation = np.where(contains(knots.spans, series.times), deviation, 0.0)
+        deviation = np.where(contains(knots.spans, series.times), deviation, 0.0)
         changed[series.name] = _without(_moved(series, deviation, rng), gaps)
-    given = needs.inputs[planned.target].series if planned.is_input else None
-    if planned.fault is Fault.SENSOR and given is not None:
-        changed[given.name] = _moved(given, np.full(len(given.times), size), rng)
     return replace(trace, series=trace.series | changed)
 
 

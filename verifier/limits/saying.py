@@ -13,10 +13,10 @@ Sides: TypeAlias = tuple[Verdict, Verdict]
 """The verdicts on a fault planted as too much, and as too little."""
 
 WORDS: Final = {
-    Fault.GAIN: ("too high", "too low"),
-    Fault.OFFSET: ("up", "down"),
+    Fault.GAIN: ("faster", "slower"),
+    Fault.OFFSET: ("upwards", "downwards"),
     Fault.DELAY: ("later", "earlier"),
-    Fault.SENSOR: ("too much", "too little"),
+    Fault.SENSOR: ("too high", "too low"),
 }
 
 
@@ -58,35 +58,43 @@ def said(
 def _untold(planned: Planned, largest: float, sides: Sides | None) -> str:
     name, words = planned.variable, WORDS[planned.fault]
     if not planned.can_act:
-        return f"no constant error of the sensor of {name} shows: the field does not read {name}"
+        return (
+            f"a sensor that shows {name} too high or too low by a constant can't be caught: the"
+            f" field does not read {name}"
+        )
     if sides is not None and Verdict.FAIL in sides:
         missed = 1 if sides[0] is Verdict.FAIL else 0
         one = _fault(planned, largest, words[missed])
-        return f"not even {one} would have been caught; {words[1 - missed]}, it would"
-    said = f"not even {_fault(planned, largest, ' or '.join(words))} would have been caught"
-    passes = sides is None or Verdict.PASS in sides
-    return said if passes else f"{said}, though it would not have passed"
+        return f"not even {one} would have failed; as much {words[1 - missed]} would have"
+    said = f"not even {_fault(planned, largest, ' or '.join(words))} would have failed"
+    if sides is None:
+        return said
+    if Verdict.PASS not in sides:
+        return f"{said}: it would have been inconclusive"
+    return f"{said}: it would have passed" if set(sides) == {Verdict.PASS} else said
 
 
 def _told(planned: Planned, smallest: float, largest: float, shown_by: tuple[str, ...]) -> str:
     name = planned.variable
     others = [each for each in shown_by if each != name]
-    by = f" (by {listed(others)})" if others and name not in shown_by else ""
+    by = f", seen in {listed(others)}" if others and name not in shown_by else ""
     beside = (
-        f", {quantity(largest, planned.unit)} not" if largest > 0.0 else " (none smaller tried)"
+        f"; {quantity(largest, planned.unit)} would not"
+        if largest > 0.0
+        else " (none smaller tried)"
     )
     words = " or ".join(WORDS[planned.fault])
-    return f"{_fault(planned, smallest, words)} would have been caught{by}{beside}"
+    return f"{_fault(planned, smallest, words)} would have failed{by}{beside}"
 
 
 def _fault(planned: Planned, size: float, direction: str) -> str:
     name, much = planned.variable, quantity(size, planned.unit)
     match planned.fault:
         case Fault.GAIN:
-            return f"a rate of {name} {much} {direction}"
+            return f"a robot whose {name} changes {much} {direction} than the spec says"
         case Fault.OFFSET:
-            return f"a rate of {name} off by a constant {much} {direction}"
+            return f"a robot whose {name} drifts {much} {direction} beside what the spec says"
         case Fault.DELAY:
             return f"a robot that acts on {name} {much} {direction} than logged"
         case Fault.SENSOR:
-            return f"a sensor that shows {much} {direction} of {name}"
+            return f"a sensor that shows {name} {much} {direction}"

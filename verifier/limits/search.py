@@ -1,35 +1,42 @@
 """Where on a ladder of sizes the verdict turns."""
 
 from collections.abc import Callable
+from typing import Final
+
+LEAP: Final = 4
+"""Rungs that are passed over at most on the way up, so that what is caught there is not missed."""
 
 
 def turning(
     is_caught: Callable[[int], bool], expected: Callable[[int], int], guess: int, rungs: int
 ) -> tuple[int | None, int | None]:
-    """The highest rung that is missed, and the one above it, which is caught.
+    """A rung that is missed, and the one above it, which is caught.
 
     The first is None where even the lowest is caught, the second where the highest is not.
     `expected` says, of a rung that was tried, where the turning is likely to be: a good guess
     saves trials and changes nothing else, as long as larger faults are caught wherever smaller
-    ones are.
+    ones are. It is taken every other time only, so that bad guesses cost little.
     """
-    missed, caught = _placed(is_caught, guess, None, None)
-    better = min(max(expected(guess), 0), rungs - 1)
-    if (missed is None or better > missed) and (caught is None or better < caught):
-        missed, caught = _placed(is_caught, better, missed, caught)
-    stride = 1
-    while caught is None and missed is not None and missed < rungs - 1:
-        missed, caught = _placed(is_caught, min(missed + stride, rungs - 1), missed, caught)
-        stride *= 2
-    while missed is None and caught is not None and caught > 0:
-        missed, caught = _placed(is_caught, max(caught - stride, 0), missed, caught)
-        stride *= 2
-    while missed is not None and caught is not None and caught - missed > 1:
-        missed, caught = _placed(is_caught, (caught + missed) // 2, missed, caught)
-    return missed, caught
+    missed, caught, rung, is_asked = -1, rungs, guess, True
+    while True:
+        if is_caught(rung):
+            caught = rung
+        else:
+            missed = rung
+        if caught - missed <= 1:
+            break
+        rung = _next(missed, caught, rungs, expected(rung) if is_asked else None)
+        is_asked = not is_asked
+    return (missed if missed >= 0 else None), (caught if caught < rungs else None)
 
 
-def _placed(
-    is_caught: Callable[[int], bool], rung: int, missed: int | None, caught: int | None
-) -> tuple[int | None, int | None]:
-    return (missed, rung) if is_caught(rung) else (rung, caught)
+def _next(missed: int, caught: int, rungs: int, hint: int | None) -> int:
+    """The rung to try next, strictly between the two."""
+    middle = (missed + caught) // 2
+    if caught == rungs:
+        middle = min(missed + LEAP, rungs - 1)
+    elif missed < 0:
+        middle = max(caught - LEAP, 0)
+    wanted = middle if hint is None else hint
+    highest = min(caught - 1, missed + LEAP) if missed >= 0 else caught - 1
+    return min(max(wanted, missed + 1), highest)

@@ -37,7 +37,7 @@ def test_the_turning_is_found_wherever_it_is(rungs: int, data: st.DataObject) ->
 
     assert caught == (turns_at if turns_at < rungs else None)
     assert missed == (turns_at - 1 if turns_at > 0 else None)
-    assert len(tried) <= 14
+    assert len(tried) <= 20
     assert len(set(tried)) == len(tried)
 
 
@@ -66,7 +66,7 @@ def test_robots_with_the_fault_are_caught_where_it_says_so(
     scenes: ModuleType, oscillator: tuple[Caught, ...], side: float
 ) -> None:
     caught = of(oscillator, Fault.GAIN, "x")
-    assert caught.largest < caught.smallest < 1.3 * caught.largest
+    assert caught.largest < caught.smallest < 1.4 * caught.largest
 
     larger = [
         verify(scenes.van_der_pol(), fast(scenes, seed, 1.0 + side * 1.5 * caught.smallest))
@@ -100,7 +100,8 @@ def test_the_sentence_tells_what_was_planted_and_what_was_missed(
     percent = f"{caught.smallest / 0.01:.3g} %"
     missed = f"{caught.largest / 0.01:.3g} %"
     assert caught.sentence == (
-        f"a rate of x {percent} too high or too low would have been caught, {missed} not"
+        f"a robot whose x changes {percent} faster or slower than the spec says would have failed;"
+        f" {missed} would not"
     )
 
 
@@ -135,7 +136,7 @@ def test_where_nothing_is_caught_the_largest_fault_is_told(scenes: ModuleType) -
 
     caught = of(found, Fault.GAIN, "v")
     assert not caught.is_caught
-    assert caught.sentence.startswith("not even a rate of v")
+    assert caught.sentence.startswith("not even a robot whose v changes")
     assert caught.largest == max(trial.size for trial in caught.trials)
 
 
@@ -180,8 +181,11 @@ def test_an_input_that_is_not_told_is_assumed_and_said(scenes: ModuleType) -> No
     assert {copy.constants["goal"] for copy in judged} == {0.25}
 
 
-def test_a_long_trace_is_planted_into_where_most_moves(scenes: ModuleType) -> None:
+def test_a_long_trace_is_planted_into_where_most_moves(
+    scenes: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Standing for 40 s, a gap, then 90 s of swinging: 40 horizons of 2 s are taken."""
+    monkeypatch.setattr("verifier.limits.excerpt.WHOLE_WINDOWS", 79)
     program, swinging = scenes.van_der_pol(), scenes.van_der_pol_drive(1, 90.0, 0.01)
     times = np.arange(0.0, 40.0, 0.05)
     noise = 0.01 * np.random.default_rng(0).standard_normal((2, len(times)))
@@ -200,7 +204,8 @@ def test_a_long_trace_is_planted_into_where_most_moves(scenes: ModuleType) -> No
 
     _, notes = smallest_caught(program, trace, report, judge)
 
-    assert "80 s of the 135 s" in notes[0]
+    assert "a recording of 80 s" in notes[0]
+    assert "of this one, 135 s long" in notes[0]
     assert min(copy.series["x"].times[0] for copy in seen) > 44.0
 
 
@@ -218,7 +223,7 @@ def test_what_is_caught_in_one_direction_only_is_told_for_the_other(scenes: Modu
 
     sentence = of(found, Fault.SENSOR, "x").sentence
     assert sentence.startswith("not even a sensor that shows")
-    assert sentence.endswith("too little of x would have been caught; too much, it would")
+    assert sentence.endswith("too low would have failed; as much too high would have")
 
 
 def test_the_search_for_a_delay_begins_where_it_shows_first(scenes: ModuleType) -> None:
