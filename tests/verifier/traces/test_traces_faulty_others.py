@@ -171,6 +171,18 @@ def test_a_database_with_values_of_other_types_loses_those_rows(workshop: Any) -
     }
 
 
+def test_a_database_whose_schema_is_no_text_gives_its_rows(workshop: Any) -> None:
+    path = write_database(workshop, 20)
+    data = path.read_bytes()
+    assert data.count(b"CREATE TABLE messages") == 1
+    path.write_bytes(data.replace(b"CREATE TABLE messages", b"CREATE\xffTABLE messages"))
+
+    trace = workshop.read(path, x="/o.pose.pose.position.x")
+
+    assert trace.series["x"].values.tolist() == list(range(20))
+    assert {"database damaged", "unverified messages"} <= {loss.cause for loss in trace.losses}
+
+
 def test_rows_of_a_database_without_numbers_are_survived(workshop: Any) -> None:
     path = write_database(workshop, 20)
     with sqlite3.connect(path) as database:

@@ -26,6 +26,8 @@ _DEFINITIONS = "SELECT topic_type, encoding, encoded_message_definition FROM mes
 _MESSAGES = "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id"
 _BATCH = 1000
 _HEAD_BYTES = 100
+# Python can't even tell what SQLite says where that quotes bytes that are no text.
+_FAULTS = (sqlite3.Error, UnicodeDecodeError)
 _ZSTD = b"\x28\xb5\x2f\xfd"
 
 
@@ -43,7 +45,7 @@ def read_bag2(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
         with closing(_open(path, gathering)) as database:
             _read_topics(database, gathering)
             _read_rows(database, gathering, tell, size)
-    except sqlite3.Error as error:
+    except _FAULTS as error:
         # What the tree of pages does not lead to may still stand in its leaves.
         gathering = Gathering(wanted)
         gathering.lose("database damaged", _sentence(error))
