@@ -17,8 +17,8 @@ from runtime.program import Program
 from verifier.fidelity.judging.departure import CONFIDENCE
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import needs_of
-from verifier.report.features import ComparedFeature, Features
-from verifier.report.wording import percent
+from verifier.report.features import ComparedFeature, Features, FeatureStanding
+from verifier.report.wording import number, percent
 from verifier.robot_topology.cycle_features import cycle_features
 from verifier.robot_topology.declared import numbers_judged
 from verifier.robot_topology.point_features import point_features
@@ -67,7 +67,7 @@ def compare_features(program: Program, trace: Trace, study: Study | None) -> Fea
         units=tuple(axis.unit for axis in scene.axes),
         settings=scene.setting.values,
         features=tuple(sorted(features, key=_order)),
-        notes=_notes(scene, is_refitted=refit is not None, any_=bool(features)),
+        notes=_notes(scene, features, is_refitted=refit is not None),
         confidence=CONFIDENCE,
     )
 
@@ -81,9 +81,11 @@ def _order(feature: ComparedFeature) -> tuple[bool, bool]:
     return not feature.in_spec, not feature.is_declared
 
 
-def _notes(scene: Scene, *, is_refitted: bool, any_: bool) -> tuple[str, ...]:
+def _notes(
+    scene: Scene, features: tuple[ComparedFeature, ...], *, is_refitted: bool
+) -> tuple[str, ...]:
     share, values = scene.setting.share, settings_words(scene.program, scene.setting.varied)
-    if not any_:
+    if not features:
         return (_nothing_there(values),)
     notes = []
     if values and share == 0.0:
@@ -97,6 +99,11 @@ def _notes(scene: Scene, *, is_refitted: bool, any_: bool) -> tuple[str, ...]:
         )
     if not is_refitted:
         notes.append(f"the field was not refitted: {_why_not(scene)}")
+    if any(feature.standing is FeatureStanding.EXCEEDED for feature in features):
+        notes.append(
+            "a feature never changes the verdict: that is about the next"
+            f" {number(scene.horizon)} s, a feature is about where the robot ends in the long run"
+        )
     return tuple(notes)
 
 

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from runtime.arrays import Array
 from runtime.claim import Claim
 from runtime.program import Unit
 from verifier.report.features import ComparedFeature, Estimate, FeatureNumber, FeatureStanding
 from verifier.robot_topology.declared import claim_on, period_allowed, reach_allowed, reach_names
-from verifier.robot_topology.laps import Laps, laps_of, nearest_cycle, on_cycle, period_of_laps
+from verifier.robot_topology.laps import Laps, laps_of, nearest_cycle, period_of_laps
 from verifier.robot_topology.loops import MeanLap, mean_lap, spec_swing
 from verifier.robot_topology.mode_laps import laps_by_modes, round_of
 from verifier.robot_topology.refitted_cycles import RefittedCycle, refitted_cycle
@@ -19,8 +20,6 @@ from verifier.robot_topology.wording import sentence_on
 from verifier.topology.features import Cycle
 from verifier.topology.names import cycle_names
 
-DRAWN = 120
-"""Points of a loop for drawing."""
 SECOND = Unit("s", 1.0)
 
 
@@ -61,11 +60,16 @@ def _feature(
         numbers=numbers,
         standing=together(numbers),
         visits=count,
-        spec_path=on_cycle(cycle, np.arange(DRAWN + 1) / DRAWN),
-        robot_path=np.empty((0, len(scene.axes))) if robot is None else robot,
+        spec_path=cycle.points,
+        robot_path=np.empty((0, len(scene.axes))) if robot is None else _closed(robot),
         sentence="",
     )
     return replace(plain, sentence=sentence_on(plain, _manner(plain, is_seen=lap is not None)))
+
+
+def _closed(loop: Array) -> Array:
+    """The loop, with its first point at its end."""
+    return np.concatenate([loop, loop[:1]])
 
 
 def _laps(scene: Scene, cycle: Cycle) -> tuple[Laps, ...]:

@@ -57,7 +57,7 @@ def _judgement(feature: ComparedFeature) -> str:
         return f"the spec's is a {feature.kind}"
     open_ = [n for n in feature.numbers if n.standing is FeatureStanding.UNDECIDED]
     if not open_ and feature.standing is FeatureStanding.WITHIN:
-        return f"within {_allowed_by(feature.numbers)}"
+        return f"that is within what is allowed by {_allowed_by(feature.numbers)}"
     unlimited = [n for n in open_ if not math.isfinite(n.tolerance)]
     if unlimited:
         names = listed([n.name for n in unlimited])
