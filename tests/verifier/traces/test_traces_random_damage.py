@@ -52,7 +52,7 @@ def damaged(data: bytes, rng: np.random.Generator) -> bytes:
 
 def json_mcap(workshop: Any, make: Any, compression: CompressionType) -> Path:
     notes = [make.said("/a", 0.1 * i, x=float(i)) for i in range(COUNT)]
-    path: Path = workshop.mcap(notes, compression=compression, chunk_size=300)
+    path: Path = workshop.mcap(notes, compression=compression, chunk_size=400)
     return path
 
 
@@ -116,10 +116,10 @@ KINDS = {
         500, lambda w, _: cdr_mcap(w, CompressionType.NONE, use_chunking=False), "/a.x",
         checked=False,
     ),
-    "bag": Kind(500, lambda w, _: w.bag1(None, COUNT, 10), "/p.point.x", checked=False),
+    "bag": Kind(500, lambda w, _: w.bag1(None, COUNT // 2, 4), "/p.point.x", checked=False),
     "bag in bz2": Kind(
         500,
-        lambda w, _: w.bag1(Writer1.CompressionFormat.BZ2, COUNT, 10),
+        lambda w, _: w.bag1(Writer1.CompressionFormat.BZ2, COUNT // 2, 4),
         "/p.point.x",
         checked=False,
     ),
