@@ -16,6 +16,7 @@ import specc
 from runtime.artifact import to_bytes
 from spec_schema.diagnostics import SpecError
 from spec_schema.source import Source
+from specc.fitting import cases
 from specc.fitting.aims import Aim, Aims, UnitAim
 from specc.fitting.compiling import compiled
 from specc.fitting.fitted import BOM, Outcome
@@ -24,9 +25,11 @@ from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
 from specc.fitting.rounding import rounded
 from tests.specc.fit_scenes import (
+    MOVER,
     SPECS,
     TOLD,
     drawn,
+    late_mover,
     other_whirl,
     patrol,
     patrolled,
@@ -36,6 +39,8 @@ from tests.specc.fit_scenes import (
 from verifier.diagnosis.diagnose import diagnose
 from verifier.report.diagnosis import CandidateKind, Diagnosis, Told
 from verifier.report.report import Verdict
+from verifier.traces.read import read_trace
+from verifier.traces.trace import Trace
 
 
 def changed_lines(before: str, after: str) -> list[tuple[str, str]]:
@@ -414,3 +419,28 @@ def test_fit_runs_nobodys_code(tmp_path: Path) -> None:
     [said] = caught.value.diagnostics
     assert (said.code, said.source.name) == ("V336", str(spec))
     assert said.message == "this field is Python code, and fit runs nobody's code"
+
+
+def test_a_log_is_read_again_only_where_the_edit_changes_how_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[Path] = []
+
+    def counted(path: Path, *rest: object, **more: object) -> Trace:
+        read.append(path)
+        return read_trace(path, *rest, **more)  # type: ignore[arg-type]  # handed on
+
+    monkeypatch.setattr(cases, "read_trace", counted)
+    spec = tmp_path / "mover.yaml"
+    log = late_mover(tmp_path / "run.csv", 0.0)
+    spec.write_text(MOVER.replace("value: 1.5", "value: 1.2"), encoding="utf-8")
+
+    assert [move.name for move in specc.fit(log, spec).moves] == ["pull"]
+    assert read == [log]
+
+    spec.write_text(MOVER, encoding="utf-8")
+    late = late_mover(tmp_path / "late.csv", 0.3)
+    read.clear()
+
+    assert [move.name for move in specc.fit(late, spec, anyway=True).moves] == ["delay of x"]
+    assert read == [late, late]
