@@ -40,7 +40,7 @@ def _kept_open(stream: TextIO | None, number: int) -> TextIO:
     """The stream in such a file; a stream to nowhere where the user has closed it (`>&-`)."""
     if stream is None:
         return open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123  open to the end
-    if not isinstance(stream, io.TextIOWrapper):
+    if not (isinstance(stream, io.TextIOWrapper) and _number_of(stream) == number):
         return stream
     return io.TextIOWrapper(
         io.BufferedWriter(_Left(number, "wb", closefd=False)),
@@ -49,6 +49,14 @@ def _kept_open(stream: TextIO | None, number: int) -> TextIO:
         line_buffering=stream.line_buffering or number == STDERR,
         write_through=stream.write_through,
     )
+
+
+def _number_of(stream: TextIO) -> int | None:
+    """Of the file that the stream writes to; None where it writes to none."""
+    try:
+        return stream.fileno()
+    except OSError:
+        return None
 
 
 @final
