@@ -1,0 +1,157 @@
+"""What senses see of a world: flat arrays of edges and circles, brought up to date as bodies move.
+
+One *owner* is a thing, a robot, or the walls of the arena: things first (declared, then scattered),
+then robots, then the walls. A footprint is a union of convex parts; the edges of a polygon stand
+together, counter-clockwise.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from runtime.arrays import Array, Integers
+from runtime.world.model import Pose, Shape
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Geometry:
+    """Everything that stands in a world, as arrays; read them at once, never keep or write them.
+
+    names: of the owners. things, robots: how many of each; the walls are the last owner.
+    segments: (s, 4) edges x1, y1, x2, y2 in the world. discs: (d, 3) x, y, radius.
+    owner, part: (s + d,) segments first, then discs: whose it is, and of which convex part (parts
+    are counted through the world; every edge of the arena is a part of its own).
+    low, high, transmittance: (s + d,) what its owner fills of the height (m), and the share of
+    light that passes; walls are opaque and endless.
+    poses: (owners, 3) x, y, heading; of the walls 0.
+    moved: (owners,) the number of the step in which it last moved; 0 for one that never did.
+    """
+
+    names: tuple[str, ...]
+    things: int
+    robots: int
+    segments: Array
+    discs: Array
+    owner: Integers
+    part: Integers
+    low: Array
+    high: Array
+    transmittance: Array
+    poses: Array
+    moved: Integers
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Outline:
+    """The footprint of one owner, in its own frame, and how it stands in the world."""
+
+    name: str
+    shape: Shape
+    pose: Pose
+    low: float
+    high: float
+    transmittance: float
+
+
+@final
+class Plan:
+    """The geometry of a world, moved along with its bodies.
+
+    Attributes:
+        geometry: as of the last `place`.
+    """
+
+    def __init__(
+        self, things: tuple[Outline, ...], robots: tuple[Outline, ...], arena: Array
+    ) -> None:
+        """Lay the arrays out; arena: (k, 2) corners of the walls, counter-clockwise."""
+        outlines = (*things, *robots)
+        parts = 0
+        edges: list[tuple[float, ...]] = []
+        edge_rows: list[tuple[int, int]] = []
+        circles: list[tuple[float, ...]] = []
+        circle_rows: list[tuple[int, int]] = []
+        for owner, outline in enumerate(outlines):
+            for polygon in outline.shape.polygons:
+                corners = polygon.vertices
+                for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
+                    edges.append((*a, *b))
+                    edge_rows.append((owner, parts))
+                parts += 1
+            for disc in outline.shape.discs:
+                circles.append((disc.x, disc.y, disc.radius))
+                circle_rows.append((owner, parts))
+                parts += 1
+        walls = np.hstack([arena, np.roll(arena, -1, axis=0)])
+        wall_rows = [(len(outlines), parts + index) for index in range(len(walls))]
+        rows = np.array([*edge_rows, *wall_rows, *circle_rows], dtype=np.int64).reshape(-1, 2)
+
+        self._edges = np.array(edges, dtype=np.float64).reshape(-1, 4)
+        self._circles = np.array(circles, dtype=np.float64).reshape(-1, 3)
+        self._edge_owner = np.array([owner for owner, _ in edge_rows], dtype=np.int64)
+        self._circle_owner = np.array([owner for owner, _ in circle_rows], dtype=np.int64)
+        owners = len(outlines) + 1
+        owner = rows[:, 0].copy()
+        self.geometry = Geometry(
+            names=(*(outline.name for outline in outlines), "walls"),
+            things=len(things),
+            robots=len(robots),
+            segments=np.vstack([np.zeros((len(edges), 4)), walls]),
+            discs=self._circles.copy(),
+            owner=owner,
+            part=rows[:, 1].copy(),
+            low=np.array([*(outline.low for outline in outlines), -np.inf])[owner],
+            high=np.array([*(outline.high for outline in outlines), np.inf])[owner],
+            transmittance=np.array([*(o.transmittance for o in outlines), 0.0])[owner],
+            poses=np.zeros((owners, 3)),
+            moved=np.zeros(owners, dtype=np.int64),
+        )
+        started = [(o.pose.x, o.pose.y, o.pose.heading) for o in outlines]
+        poses = np.array(started, dtype=np.float64).reshape(-1, 3)
+        self.geometry.poses[:-1] = poses
+        self._turns = np.zeros((owners, 2))
+        self._turn(range(owners))
+        self._move(slice(None), slice(None))
+
+    def place(self, poses: Array, step: int) -> None:
+        """Bring things and robots to `poses` (owners - 1, 3), as they are after step `step`."""
+        geometry = self.geometry
+        moved = (poses != geometry.poses[:-1]).any(axis=1)
+        if not moved.any():
+            return
+        geometry.poses[:-1][moved] = poses[moved]
+        geometry.moved[:-1][moved] = step
+        self._turn(moved.nonzero()[0].tolist())
+        self._move(moved[self._edge_owner].nonzero()[0], moved[self._circle_owner].nonzero()[0])
+
+    def _turn(self, owners: Iterable[int]) -> None:
+        """Cosine and sine of headings, one by one: in arrays they may depend on the place."""
+        for owner in owners:
+            heading = float(self.geometry.poses[owner, 2])
+            self._turns[owner] = math.cos(heading), math.sin(heading)
+
+    def _move(self, edges: Integers | slice, circles: Integers | slice) -> None:
+        """Work the rows `edges` and `circles` out anew from the poses of their owners."""
+        geometry = self.geometry
+        x, y, _ = geometry.poses[self._edge_owner[edges]].T
+        cosine, sine = self._turns[self._edge_owner[edges]].T
+        local = self._edges[edges].T
+        geometry.segments[: len(self._edges)][edges] = np.stack(
+            [
+                x + cosine * local[0] - sine * local[1],
+                y + sine * local[0] + cosine * local[1],
+                x + cosine * local[2] - sine * local[3],
+                y + sine * local[2] + cosine * local[3],
+            ],
+            axis=1,
+        )
+        x, y, _ = geometry.poses[self._circle_owner[circles]].T
+        cosine, sine = self._turns[self._circle_owner[circles]].T
+        local = self._circles[circles].T
+        geometry.discs[circles, 0] = x + cosine * local[0] - sine * local[1]
+        geometry.discs[circles, 1] = y + sine * local[0] + cosine * local[1]
