@@ -40,7 +40,7 @@ def _diagnosis(diagnosis: Diagnosis, switching: Switching | None) -> str:
     title, sentences = why(diagnosis, switching)
     blocks = [bullets(sentences)]
     if rows:
-        blocks.append(f"{INDENT}tried instead of the first:\n{table(rows, INDENT)}")
+        blocks.append(f"{INDENT}tried instead of the first (shares of the error beyond noise):\n{table(rows, INDENT)}")
     return section(f"why: {title}", blocks)
 
 
@@ -48,7 +48,7 @@ def _worth(candidate: Candidate) -> str:
     """How much it explains, and what it would leave."""
     share = percent(max(candidate.evidence.share, 0.0))
     left = f", leaves {candidate.leaves}" if candidate.leaves else ""
-    return f"explains {share} of the error beyond noise{left}"
+    return f"explains {share}{left}"
 
 
 def _number(each: FittedNumber) -> str:
