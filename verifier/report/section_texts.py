@@ -40,7 +40,8 @@ def _diagnosis(diagnosis: Diagnosis, switching: Switching | None) -> str:
     title, sentences = why(diagnosis, switching)
     blocks = [bullets(sentences)]
     if rows:
-        blocks.append(f"{INDENT}tried instead of the first (shares of the error beyond noise):\n{table(rows, INDENT)}")
+        title_of = "tried instead of the first (shares of the error beyond noise):"
+        blocks.append(f"{INDENT}{title_of}\n{table(rows, INDENT)}")
     return section(f"why: {title}", blocks)
 
 
