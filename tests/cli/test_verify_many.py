@@ -171,8 +171,8 @@ def test_the_table_has_a_row_for_each_and_says_why_one_did_not_pass(
     assert "FAIL" in rows["bad.csv"]
     assert "exceeded" in rows["bad.csv"]
     assert "can't be used" in rows["torn.csv"]
-    assert any(line.strip().startswith("bad.csv: ") for line in lines[5:])
-    assert any(line.strip().startswith("torn.csv: ") for line in lines[5:])
+    assert any(line.strip().startswith("bad.csv, FAIL: ") for line in lines[5:])
+    assert any(line.strip().startswith("torn.csv can't be used: ") for line in lines[5:])
     assert lines[-1] == "FAIL  3 recordings: 1 fail, 1 pass, 1 can't be used"
 
 
