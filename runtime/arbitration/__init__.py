@@ -1,0 +1,1 @@
+"""How arbiters decide: one file for each paradigm, behind one protocol."""
