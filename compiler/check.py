@@ -1,56 +1,19 @@
 """What can be told of a spec without tabulating it and without running anything of the author's."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, final
+from typing import Final
 
-from compiler.check_ways import check_ways
-from compiler.claims import lower_claims
-from compiler.declare import Declarations, declare
-from compiler.findings import Findings
-from compiler.lower_parts import (
-    lower_bindings,
-    lower_fidelity,
-)
-from compiler.read_expressions import Expressions, read_expressions
-from compiler.read_modes import check_moved_values
-from compiler.references import check_references
-from compiler.settings import Settings, settings_of
-from compiler.sketch.compose import compose
-from compiler.sketch.design import Design
-from compiler.sketch.drawing import Drawing
-from compiler.sketch.frame import SketchRefusedError
-from runtime.claim import Claim
-from runtime.program import Binding, Fidelity
+from compiler.check_behavior import Checked, check_behavior
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
-from spec_schema.field_modes import Modes
-from spec_schema.load import Examined, Loaded, examine
+from spec_schema.load import Examined, examine
 from spec_schema.source import Span
 
-
-@final
-@dataclass(frozen=True, slots=True)
-class Checked:
-    """A behavior that has been through the static passes; `findings` may hold errors."""
-
-    loaded: Loaded
-    spec: BehaviorSpec
-    declared: Declarations
-    expressions: Expressions
-    fidelity: Fidelity | None
-    bindings: tuple[Binding, ...]
-    claims: tuple[Claim, ...]
-    settings: Settings
-    findings: Findings
-    design: Design | None = None
-
+__all__ = ["Checked", "check", "check_behavior", "check_examined"]
 
 BY_DOMAINS: Final = ("S25", "S26")
 """Modes and sketches: what is told of them may follow from the domain of a variable."""
-COUNTING: Final = frozenset({"S267"})
-"""What is told of all features of a sketch together."""
 
 
 def check(path: Path | str) -> tuple[Diagnostic, ...]:
@@ -81,35 +44,3 @@ def _is_news(found: Diagnostic, lost: Collection[str], told: Collection[Span | N
     if lost and found.code.startswith(BY_DOMAINS):
         return False
     return found.span not in told and not any(f"'{name}'" in found.message for name in lost)
-
-
-def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:
-    """The static passes, in order; each adds to the findings and lets the next go on."""
-    findings = Findings(loaded)
-    declared = declare(spec, loaded, findings)
-    expressions = read_expressions(spec, declared, findings)
-    fidelity = lower_fidelity(spec, declared, loaded, findings)
-    bindings = lower_bindings(spec, declared, loaded, findings)
-    claims = lower_claims(spec, declared, loaded, findings)
-    settings = settings_of(spec, declared, findings)
-    check_references(spec, declared, expressions, claims, findings)
-    check_moved_values(spec, findings)
-    if isinstance(spec.field.form, Modes) and not findings.has_errors:
-        check_ways(spec.field.form, expressions.ways, declared, findings)
-    design = None
-    if expressions.drawing is not None and not findings.has_errors:
-        design = designed(expressions.drawing, declared, findings)
-    return Checked(
-        loaded, spec, declared, expressions, fidelity, bindings, claims, settings, findings, design
-    )
-
-
-def designed(drawing: Drawing, declared: Declarations, findings: Findings) -> Design | None:
-    """What is to be built from a drawing; None, and a finding, where nothing can look like it."""
-    try:
-        return compose(drawing, declared)
-    except SketchRefusedError as error:
-        if error.code in COUNTING and findings.lacks_items(("field", "sketch")):
-            return None  # what was refused may be what is missing
-        findings.error(error.code, error.path, error.message, error.remedy)
-        return None

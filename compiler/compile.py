@@ -16,18 +16,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias, final
 
+from compiler.assemble import assembled
 from compiler.check import Checked, check_behavior, check_examined
 from compiler.horizon import excess
-from compiler.lower_field import Progress, formula_codes, lower_field, measured
-from compiler.lower_parts import (
-    lower_feasibility,
-    lower_guards,
-    lower_judge_when,
-    lower_outputs,
-    lower_realizes,
-    lower_states,
-    origin_of,
-)
+from compiler.lower_field import Progress, lower_field, measured
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
 from compiler.python_module import ModuleError
 from compiler.settings import Settings
@@ -46,6 +38,8 @@ from spec_schema.field_forms import Form, Formula, Step
 from spec_schema.field_modes import Modes
 from spec_schema.load import Loaded, examine
 from spec_schema.places import Path as KeyPath
+
+__all__ = ["Compiled", "Judge", "Progress", "compile_file", "compile_loaded"]
 
 Judge: TypeAlias = Callable[[Program], tuple[str, ...]]
 
@@ -92,7 +86,7 @@ def compile_loaded(loaded: Loaded, progress: Progress, judge: Judge | None = Non
         raise SpecError([loaded.error("S200", ("kind",), message, "name a behavior spec")])
     checked = check_behavior(loaded, loaded.spec)
     _stop_at_errors(checked)
-    program = _assembled(checked, _untabulated(checked))
+    program = assembled(checked)
     if checked.design is not None:
         program = _sketched(checked, checked.design, program, progress, judge)
     elif checked.spec.table.keep == "tables":
@@ -105,20 +99,6 @@ def compile_loaded(loaded: Loaded, progress: Progress, judge: Judge | None = Non
 def _stop_at_errors(checked: Checked) -> None:
     if checked.findings.has_errors:
         raise SpecError(checked.findings.diagnostics)
-
-
-def _untabulated(checked: Checked) -> Field:
-    """The field as far as it is known before anything is tabulated: its form and formula."""
-    form = checked.spec.field.form
-    name, every = type(form).__name__.lower(), checked.settings.every
-    driven = tuple(state.name for state in checked.declared.driven)
-    field = Field(driven, name, every, (), (), (), None, checked.loaded.origin(("field",)))
-    if isinstance(form, Modes):
-        guards = lower_guards(checked.expressions.ways, checked.loaded)
-        field = replace(field, mode=form.of, guards=guards)
-    if isinstance(form, Formula | Step | Modes):
-        return formula_codes(checked.expressions.rates, field)
-    return field
 
 
 def _sketched(
@@ -241,23 +221,3 @@ def _path_of(error: TableError, checked: Checked) -> KeyPath:
     if error.axis is None:
         return ("field",)
     return ("state" if error.axis in checked.spec.state else "control", error.axis)
-
-
-def _assembled(checked: Checked, field: Field) -> Program:
-    spec, declared, expressions = checked.spec, checked.declared, checked.expressions
-    return Program(
-        name=spec.name,
-        about=spec.about or "",
-        states=lower_states(declared, expressions.closures),
-        controls=declared.controls,
-        constants=declared.constants,
-        outputs=lower_outputs(spec, expressions, checked.loaded),
-        field=field,
-        fidelity=checked.fidelity,
-        bindings=checked.bindings,
-        judge_when=lower_judge_when(expressions),
-        realizes=lower_realizes(spec, checked.loaded),
-        feasibility=lower_feasibility(spec),
-        source=origin_of(checked.loaded),
-        claims=checked.claims,
-    )

@@ -13,7 +13,7 @@ from spec_schema.behavior import BehaviorSpec
 from spec_schema.load import Loaded
 from spec_schema.places import Path
 from spec_schema.units import Unit
-from spec_schema.variables import StateSpec
+from spec_schema.variables import ConstantSpec, ControlSpec, StateSpec
 
 NO_UNIT = ProgramUnit("1", 1.0)
 
@@ -67,10 +67,12 @@ def declare(spec: BehaviorSpec, loaded: Loaded, findings: Findings) -> Declarati
         _state(name, state, units.get(name), loaded, findings) for name, state in spec.state.items()
     )
     controls = tuple(
-        _control(spec, name, units.get(name), loaded, findings) for name in spec.control
+        control_of(name, control, units.get(name), loaded, findings)
+        for name, control in spec.control.items()
     )
     constants = tuple(
-        _constant(spec, name, units.get(name), loaded, findings) for name in spec.constants
+        constant_of(name, constant, units.get(name), loaded, findings)
+        for name, constant in spec.constants.items()
     )
     values = {name: state.values for name, state in spec.state.items() if state.values}
     return Declarations(states, controls, constants, units, values)
@@ -108,7 +110,7 @@ def _units(spec: BehaviorSpec, findings: Findings) -> dict[str, Unit]:
     return {name: unit for name, unit in found.items() if unit is not None}
 
 
-def _limits(
+def limits_of(
     domain: tuple[float | str, float | str] | None,
     unit: Unit | None,
     path: Path,
@@ -139,8 +141,8 @@ def _state(
         low, high = 0.0, float(max(len(values) - 1, 0))
         hold = float(values.index(spec.hold)) if spec.hold in values else 0.0
     else:
-        low, high = _limits(spec.domain, unit, (*path, "domain"), findings)
-        hold = _inside(spec.hold, (low, high), unit, (*path, "hold"), findings)
+        low, high = limits_of(spec.domain, unit, (*path, "domain"), findings)
+        hold = inside(spec.hold, (low, high), unit, (*path, "hold"), findings)
     return State(
         name=name,
         unit=program_unit(unit),
@@ -157,7 +159,7 @@ def _state(
     )
 
 
-def _inside(
+def inside(
     value: float | str | None,
     limits: tuple[float, float],
     unit: Unit | None,
@@ -184,20 +186,22 @@ def _in(value: float, unit: Unit | None) -> str:
     return f"{value / unit.scale:g} {unit.text}" if unit else f"{value:g}"
 
 
-def _control(
-    spec: BehaviorSpec, name: str, unit: Unit | None, loaded: Loaded, findings: Findings
+def control_of(
+    name: str, control: ControlSpec, unit: Unit | None, loaded: Loaded, findings: Findings
 ) -> Control:
-    control, path = spec.control[name], ("control", name)
-    low, high = _limits(control.domain, unit, (*path, "domain"), findings)
-    default = _inside(control.default, (low, high), unit, (*path, "default"), findings)
+    """A control parameter in SI."""
+    path: Path = ("control", name)
+    low, high = limits_of(control.domain, unit, (*path, "domain"), findings)
+    default = inside(control.default, (low, high), unit, (*path, "default"), findings)
     about = control.about or ""
     return Control(name, program_unit(unit), low, high, default, about, loaded.origin(path))
 
 
-def _constant(
-    spec: BehaviorSpec, name: str, unit: Unit | None, loaded: Loaded, findings: Findings
+def constant_of(
+    name: str, constant: ConstantSpec, unit: Unit | None, loaded: Loaded, findings: Findings
 ) -> Constant:
-    constant, path = spec.constants[name], ("constants", name)
+    """A constant in SI."""
+    path: Path = ("constants", name)
     value = si_value(constant.value, unit, (*path, "value"), findings)
     about = constant.about or ""
     return Constant(name, program_unit(unit), value or 0.0, about, loaded.origin(path))

@@ -21,6 +21,7 @@ from runtime.program import (
     State,
     Unit,
 )
+from spec_schema.arbiter import ArbiterSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.dimension import describe
 from spec_schema.expressions.printers.postfix import to_postfix
@@ -47,7 +48,7 @@ def lower_states(declared: Declarations, closures: Mapping[str, Expr]) -> tuple[
 
 
 def lower_outputs(
-    spec: BehaviorSpec, expressions: Expressions, loaded: Loaded
+    spec: BehaviorSpec | ArbiterSpec, outputs: Mapping[str, Expr], loaded: Loaded
 ) -> tuple[Output, ...]:
     """The output parameters."""
     return tuple(
@@ -58,7 +59,7 @@ def lower_outputs(
             about=spec.output[name].about or "",
             origin=loaded.origin(("output", name)),
         )
-        for name, expr in expressions.outputs.items()
+        for name, expr in outputs.items()
     )
 
 
@@ -129,7 +130,7 @@ def _part_of_domain(
 
 
 def lower_bindings(
-    spec: BehaviorSpec, declared: Declarations, loaded: Loaded, findings: Findings
+    spec: BehaviorSpec | ArbiterSpec, declared: Declarations, loaded: Loaded, findings: Findings
 ) -> tuple[Binding, ...]:
     """Where each variable and each signal stands in a log."""
     skipped = {*spec.output, *spec.constants}

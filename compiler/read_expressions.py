@@ -12,6 +12,7 @@ from compiler.read_rates import read_rates
 from compiler.scope import Scope, checked, dimension_in, read, scope_of, wanted_of
 from compiler.sketch.drawing import Drawing
 from compiler.sketch.reading import read_sketch
+from spec_schema.arbiter import ArbiterSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.dimension import DIMENSIONLESS
 from spec_schema.expressions.tree import Expr
@@ -42,10 +43,10 @@ def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findi
     scope = scope_of(declared)
     rates, ways = _rates(spec, declared, scope, findings)
     closures = _closures(spec, declared, scope, findings)
-    outputs = _outputs(spec, scope, findings)
+    outputs = read_outputs(spec, scope, findings)
     judge_when = None
     if spec.judge_when is not None:
-        wider = _with_signals(spec, scope, findings)
+        wider = with_signals(spec, scope, findings)
         judge_when = read(spec.judge_when, ("judge_when",), wider, findings)
     drawing = None
     if isinstance(spec.field.form, Sketch):
@@ -53,13 +54,15 @@ def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findi
     return Expressions(rates, closures, outputs, judge_when, ways, drawing)
 
 
-def signals(spec: BehaviorSpec) -> tuple[str, ...]:
+def signals(spec: BehaviorSpec | ArbiterSpec) -> tuple[str, ...]:
     """The names under `trace:` that are declared nowhere: only `judge_when` reads them."""
-    declared = {*spec.state, *spec.control, *spec.constants, *spec.output}
+    states = spec.state if isinstance(spec, BehaviorSpec) else {*spec.reads, "choice"}
+    declared = {*states, *spec.control, *spec.constants, *spec.output}
     return tuple(name for name in spec.trace if name not in declared)
 
 
-def _with_signals(spec: BehaviorSpec, scope: Scope, findings: Findings) -> Scope:
+def with_signals(spec: BehaviorSpec | ArbiterSpec, scope: Scope, findings: Findings) -> Scope:
+    """The scope with the signals that `judge_when` may read beside."""
     dimensions, values = dict(scope.dimensions), dict(scope.values)
     for name in signals(spec):
         entry = spec.trace[name]
@@ -101,7 +104,10 @@ def _closures(
     return found
 
 
-def _outputs(spec: BehaviorSpec, scope: Scope, findings: Findings) -> dict[str, Expr]:
+def read_outputs(
+    spec: BehaviorSpec | ArbiterSpec, scope: Scope, findings: Findings
+) -> dict[str, Expr]:
+    """The trees of the outputs, by name."""
     found: dict[str, Expr] = {}
     for name, output in spec.output.items():
         wanted = unit_of(output.unit, ("output", name, "unit"), findings)

@@ -8,6 +8,7 @@ from compiler.findings import Findings
 from compiler.read_expressions import Expressions, signals
 from runtime.claim import Claim
 from runtime.program import Role
+from spec_schema.arbiter import ArbiterSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.field_forms import Arrows, Form, Grid, Module
@@ -28,7 +29,7 @@ def check_references(
     """A finding for each name that means nothing where it stands, and for each left unused."""
     _check_axes(spec.field.form, declared, findings)
     _check_keys(spec, declared, findings)
-    _check_trace(spec, declared, findings)
+    check_trace(spec, declared, findings)
     _check_signals(spec, declared, expressions, findings)
     read = _read_by_field(spec.field.form, declared, expressions)
     _warn_of_imitation(read - mode_of(spec.field.form), declared, findings)
@@ -147,7 +148,10 @@ def _check_keys(spec: BehaviorSpec, declared: Declarations, findings: Findings) 
             findings.error("S214", ("realizes", name), message, remedy)
 
 
-def _check_trace(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> None:
+def check_trace(
+    spec: BehaviorSpec | ArbiterSpec, declared: Declarations, findings: Findings
+) -> None:
+    """A finding for each entry of `trace:` for what no log is read for, or with unknown values."""
     for name in spec.output:
         if name in spec.trace:
             message = (
