@@ -96,18 +96,18 @@ class Plan:
         self._edge_owner = np.array([owner for owner, _ in edge_rows], dtype=np.int64)
         self._circle_owner = np.array([owner for owner, _ in circle_rows], dtype=np.int64)
         owners = len(outlines) + 1
-        owner = rows[:, 0].copy()
+        whose: Integers = rows[:, 0].copy()
         self.geometry = Geometry(
             names=(*(outline.name for outline in outlines), "walls"),
             things=len(things),
             robots=len(robots),
             segments=np.vstack([np.zeros((len(edges), 4)), walls]),
             discs=self._circles.copy(),
-            owner=owner,
+            owner=whose,
             part=rows[:, 1].copy(),
-            low=np.array([*(outline.low for outline in outlines), -np.inf])[owner],
-            high=np.array([*(outline.high for outline in outlines), np.inf])[owner],
-            transmittance=np.array([*(o.transmittance for o in outlines), 0.0])[owner],
+            low=np.array([*(outline.low for outline in outlines), -np.inf])[whose],
+            high=np.array([*(outline.high for outline in outlines), np.inf])[whose],
+            transmittance=np.array([*(o.transmittance for o in outlines), 0.0])[whose],
             poses=np.zeros((owners, 3)),
             moved=np.zeros(owners, dtype=np.int64),
         )
