@@ -30,6 +30,7 @@ def faults(program: Program) -> Iterator[str]:
     yield from _ranged(program)
     yield from _field(program)
     yield from _claimed(program)
+    yield from _restless(program)
     yield from _coded(program)
 
 
@@ -158,6 +159,12 @@ def _claimed(program: Program) -> Iterator[str]:
             yield f"claim {number} speaks of a share that is none"
 
 
+def _restless(program: Program) -> Iterator[str]:
+    names = [noise.state for noise in program.noise]
+    if _repeated(names) or set(names) - set(program.field.driven):
+        yield "there is noise of what the field does not drive, or twice"
+
+
 def _table(program: Program, table: Table) -> Iterator[str]:
     names = tuple(axis.name for axis in table.axes)
     known = {*program.register, *(coordinate.name for coordinate in program.field.coordinates)}
@@ -213,6 +220,7 @@ def _codes(program: Program) -> Iterator[tuple[str, Code, tuple[str, ...]]]:
         for name, code in guard.resets:
             yield f"reset of '{name}' by guard {number}", code, register
     yield from _codes_of_claims(program)
+    yield from ((f"noise of '{noise.state}'", noise.size, register) for noise in program.noise)
     if program.judge_when is not None:
         signals = tuple(binding.name for binding in program.bindings)
         yield "judge_when", program.judge_when, (*register, *signals)

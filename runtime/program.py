@@ -132,6 +132,20 @@ class Coordinate:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Noise:
+    """Restlessness of a driven state: white noise that is added to its rate.
+
+    size: over the register; the standard deviation that it adds up to in one second, growing with
+    the square root of time (of a step map: that is added at each step).
+    """
+
+    state: str
+    size: Code
+    origin: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Guard:
     """A way out of a mode, taken as soon as `condition` is zero or more.
 
@@ -292,6 +306,7 @@ class Program:
     control, constant nor output).
     judge_when: over register entries and signals; non-zero where the behavior had its way.
     claims: what its author, or a sketch, says of the topology of the field, in their order.
+    noise: of driven states that are moved at random beside the field.
     """
 
     name: str
@@ -308,6 +323,7 @@ class Program:
     feasibility: Feasibility | None
     source: Origin
     claims: tuple[Claim, ...] = ()
+    noise: tuple[Noise, ...] = ()
 
     @property
     def register(self) -> tuple[str, ...]:

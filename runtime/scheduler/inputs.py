@@ -1,0 +1,53 @@
+"""Wires into a node: where each entry of its register comes from at its ticks."""
+
+from collections.abc import Mapping, Sequence
+from typing import final
+
+import numpy as np
+
+from runtime.architecture import Input, Outside
+from runtime.arrays import Array, Booleans, Integers
+from runtime.kernels.blocks import LARGEST
+
+ANY = (-LARGEST, LARGEST)
+"""The domain of what may be any finite number."""
+
+
+@final
+class Inputs:
+    """The inputs of one node, as arrays over its m wires; choices may set some for a while.
+
+    signals: places on the board, -1 for a value. low, high: the domains of the entries.
+    inhibits: whether a reading outside keeps the node from acting; else it is clipped.
+    """
+
+    def __init__(self, wires: Sequence[Input], domains: Mapping[str, tuple[float, float]]) -> None:
+        self.entries = tuple(wire.entry for wire in wires)
+        self.signals: Integers = np.array([wire.signal for wire in wires], dtype=np.int64)
+        self.values: Array = np.array([wire.value for wire in wires], dtype=np.float64)
+        self.scales: Array = np.array([wire.scale for wire in wires], dtype=np.float64)
+        limits = [domains.get(wire.entry, ANY) for wire in wires]
+        self.low: Array = np.array([low for low, _ in limits], dtype=np.float64)
+        self.high: Array = np.array([high for _, high in limits], dtype=np.float64)
+        self.inhibits: Booleans = np.array(
+            [wire.outside is Outside.INHIBIT for wire in wires], dtype=np.bool_
+        )
+        self._wired = (self.signals.copy(), self.values.copy())
+
+    def set(self, entry: str, value: float | None) -> None:
+        """Let an entry have a value instead of what it is wired to; None undoes that."""
+        place = self.entries.index(entry)
+        if value is None:
+            self.signals[place], self.values[place] = (wired[place] for wired in self._wired)
+        else:
+            self.signals[place], self.values[place] = -1, value
+
+    def read(self, board: Array) -> tuple[Array, bool]:
+        """The values (m,) of the entries now, and whether none of them keeps it from acting."""
+        raw = np.where(self.signals >= 0, board[self.signals] * self.scales, self.values)
+        inside = (raw >= self.low) & (raw <= self.high)
+        if inside.all():
+            return raw, True
+        lost = np.isnan(raw)
+        clipped = np.clip(np.where(lost, self.low, raw), self.low, self.high)
+        return clipped, not bool((~inside & self.inhibits | lost).any())

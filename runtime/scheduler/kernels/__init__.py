@@ -1,0 +1,1 @@
+"""What is compiled of the scheduler: one tick of a behavior."""
