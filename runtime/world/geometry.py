@@ -5,14 +5,13 @@ then robots, then the walls. A footprint is a union of convex parts; the edges o
 together, counter-clockwise.
 """
 
-import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
 from runtime.arrays import Array, Integers
+from runtime.world.kernels import nearness
 from runtime.world.model import Pose, Shape
 
 
@@ -93,8 +92,8 @@ class Plan:
 
         self._edges = np.array(edges, dtype=np.float64).reshape(-1, 4)
         self._circles = np.array(circles, dtype=np.float64).reshape(-1, 3)
-        self._edge_owner = np.array([owner for owner, _ in edge_rows], dtype=np.int64)
-        self._circle_owner = np.array([owner for owner, _ in circle_rows], dtype=np.int64)
+        self._first_edges = _first([owner for owner, _ in edge_rows], len(outlines))
+        self._first_circles = _first([owner for owner, _ in circle_rows], len(outlines))
         owners = len(outlines) + 1
         whose: Integers = rows[:, 0].copy()
         self.geometry = Geometry(
@@ -111,47 +110,35 @@ class Plan:
             poses=np.zeros((owners, 3)),
             moved=np.zeros(owners, dtype=np.int64),
         )
+        # None is there yet: a pose that is no number differs from every other.
+        self.geometry.poses[:-1] = np.nan
         started = [(o.pose.x, o.pose.y, o.pose.heading) for o in outlines]
-        poses = np.array(started, dtype=np.float64).reshape(-1, 3)
-        self.geometry.poses[:-1] = poses
-        self._turns = np.zeros((owners, 2))
-        self._turn(range(owners))
-        self._move(slice(None), slice(None))
+        self.place(np.array(started, dtype=np.float64).reshape(-1, 3), 0)
 
     def place(self, poses: Array, step: int) -> None:
         """Bring things and robots to `poses` (owners - 1, 3), as they are after step `step`."""
         geometry = self.geometry
-        moved = (poses != geometry.poses[:-1]).any(axis=1)
-        if not moved.any():
-            return
-        geometry.poses[:-1][moved] = poses[moved]
-        geometry.moved[:-1][moved] = step
-        self._turn(moved.nonzero()[0].tolist())
-        self._move(moved[self._edge_owner].nonzero()[0], moved[self._circle_owner].nonzero()[0])
-
-    def _turn(self, owners: Iterable[int]) -> None:
-        """Cosine and sine of headings, one by one: in arrays they may depend on the place."""
-        for owner in owners:
-            heading = float(self.geometry.poses[owner, 2])
-            self._turns[owner] = math.cos(heading), math.sin(heading)
-
-    def _move(self, edges: Integers | slice, circles: Integers | slice) -> None:
-        """Work the rows `edges` and `circles` out anew from the poses of their owners."""
-        geometry = self.geometry
-        x, y, _ = geometry.poses[self._edge_owner[edges]].T
-        cosine, sine = self._turns[self._edge_owner[edges]].T
-        local = self._edges[edges].T
-        geometry.segments[: len(self._edges)][edges] = np.stack(
-            [
-                x + cosine * local[0] - sine * local[1],
-                y + sine * local[0] + cosine * local[1],
-                x + cosine * local[2] - sine * local[3],
-                y + sine * local[2] + cosine * local[3],
-            ],
-            axis=1,
+        nearness.place(
+            poses,
+            step,
+            geometry.poses,
+            geometry.moved,
+            self._first_edges,
+            self._edges,
+            geometry.segments,
+            self._first_circles,
+            self._circles,
+            geometry.discs,
         )
-        x, y, _ = geometry.poses[self._circle_owner[circles]].T
-        cosine, sine = self._turns[self._circle_owner[circles]].T
-        local = self._circles[circles].T
-        geometry.discs[circles, 0] = x + cosine * local[0] - sine * local[1]
-        geometry.discs[circles, 1] = y + sine * local[0] + cosine * local[1]
+
+    def outline(self, owner: int) -> tuple[Array, Array]:
+        """The edges (s, 4) and circles (d, 3) of a thing or a robot where it is: no copies."""
+        edges = slice(self._first_edges[owner], self._first_edges[owner + 1])
+        circles = slice(self._first_circles[owner], self._first_circles[owner + 1])
+        return self.geometry.segments[edges], self.geometry.discs[circles]
+
+
+def _first(owners: list[int], count: int) -> Integers:
+    """The first row of each owner, of rows that are sorted by owner; then the end."""
+    first: Integers = np.searchsorted(owners, np.arange(count + 1)).astype(np.int64)
+    return first
