@@ -34,6 +34,12 @@ def bounds(expr: Expr, box: Mapping[str, tuple[float, float]]) -> tuple[float, f
     >>> round(low, 12), round(high, 12)
     (-1.0, 3.0)
     """
+    found = interval_of(expr, box)
+    return (math.nan, math.nan) if found.is_empty else (found.low, found.high)
+
+
+def interval_of(expr: Expr, box: Mapping[str, tuple[float, float]]) -> Interval:
+    """What `bounds` says, and whether the value may be nan."""
 
     def visit(node: Expr, operands: tuple[Interval, ...]) -> Interval:
         match node:
@@ -50,8 +56,7 @@ def bounds(expr: Expr, box: Mapping[str, tuple[float, float]]) -> tuple[float, f
                 return nothing() if empty else OPERATIONS[op](*operands)
         raise AssertionError("texts are resolved before an expression is bounded")
 
-    found = fold(expr, visit)
-    return (math.nan, math.nan) if found.is_empty else (found.low, found.high)
+    return fold(expr, visit)
 
 
 NO, YES, MAYBE = Interval(0.0, 0.0), Interval(1.0, 1.0), Interval(0.0, 1.0)
