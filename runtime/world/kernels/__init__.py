@@ -1,0 +1,1 @@
+"""Compiled loops of the senses: rays, shadows and lines of sight."""

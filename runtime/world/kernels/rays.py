@@ -1,0 +1,118 @@
+"""Rays along the floor and lines of sight, compiled."""
+
+import math
+
+import numpy as np
+
+from runtime.arrays import Array, Integers
+from runtime.kernels.cache import inlined, part
+from runtime.world.kernels.cache import kernel
+from runtime.world.kernels.parts import Parts, span, stands_between
+
+WIDER = 1e-9
+"""Circles around parts are so much larger that rounding loses nothing."""
+
+
+@part
+def surround(parts: Parts, row: int) -> tuple[float, float, float]:
+    """A circle (x, y, radius) around a part."""
+    first, count = parts.rows[row, 0], parts.rows[row, 1]
+    segments, discs = parts.segments, parts.discs
+    if count == 0:
+        return discs[first, 0], discs[first, 1], discs[first, 2] * (1.0 + WIDER) + WIDER
+    x = y = 0.0
+    for edge in range(first, first + count):
+        x += 0.5 * (segments[edge, 0] + segments[edge, 2])
+        y += 0.5 * (segments[edge, 1] + segments[edge, 3])
+    x, y = x / count, y / count
+    largest = 0.0
+    for edge in range(first, first + count):
+        rx, ry = segments[edge, 0] - x, segments[edge, 1] - y
+        largest = max(largest, rx * rx + ry * ry)
+    if count == 1:
+        rx, ry = segments[first, 2] - x, segments[first, 3] - y
+        largest = max(largest, rx * rx + ry * ry)
+    return x, y, math.sqrt(largest) * (1.0 + WIDER) + WIDER
+
+
+@inlined
+def is_at(height: float, parts: Parts, row: int) -> bool:
+    """Whether a part is met at a height; the same rule as of `stands_between`."""
+    return bool((parts.low[row] < height or parts.low[row] <= 0.0) and height < parts.high[row])
+
+
+@kernel
+def cast(
+    rays: Array, reach: float, height: float, skip: int, parts: Parts
+) -> tuple[Array, Integers]:
+    """Follow rays (n, 4), x, y and a unit direction, at one height to what they hit first.
+
+    skip: the owner that is not hit. Returns the distances (n,), 0 for a ray that begins inside
+    something and `reach` where nothing is nearer, and the owners (n,), -1 for nothing.
+    """
+    total = len(parts.rows)
+    circles = np.empty((total, 3))
+    there = np.empty(total, dtype=np.int64)
+    count = 0
+    for row in range(total):
+        if parts.rows[row, 2] != skip and is_at(height, parts, row):
+            circles[count, 0], circles[count, 1], circles[count, 2] = surround(parts, row)
+            there[count] = row
+            count += 1
+    distances = np.full(len(rays), reach)
+    owners = np.full(len(rays), -1)
+    for ray in range(len(rays)):
+        ox, oy, dx, dy = rays[ray, 0], rays[ray, 1], rays[ray, 2], rays[ray, 3]
+        nearest, hit = reach, -1
+        for k in range(count):
+            rx, ry, radius = circles[k, 0] - ox, circles[k, 1] - oy, circles[k, 2]
+            along = rx * dx + ry * dy
+            if abs(rx * dy - ry * dx) > radius or along < -radius or along - radius > nearest:
+                continue
+            enters, leaves = span(ox, oy, dx, dy, parts, there[k])
+            if enters <= leaves and leaves >= 0.0 and enters < nearest:
+                if enters < 0.0 and parts.rows[there[k], 1] == 1:
+                    continue
+                nearest, hit = max(enters, 0.0), parts.rows[there[k], 2]
+        distances[ray], owners[ray] = nearest, hit
+    return distances, owners
+
+
+@inlined
+def is_hidden(
+    eye: tuple[float, float, float],
+    way: tuple[float, float, float],
+    skip: int,
+    target: int,
+    parts: Parts,
+) -> bool:
+    """Whether anything but `skip` and `target` stands between `eye` and `eye + way`."""
+    for row in range(len(parts.rows)):
+        owner = parts.rows[row, 2]
+        if owner not in (skip, target) and stands_between(eye, way, parts, row):
+            return True
+    return False
+
+
+@kernel
+def nearest_seen(
+    eye: Array, view: Array, targets: Array, owners: Integers, skip: int, parts: Parts
+) -> tuple[int, float]:
+    """The nearest of targets (m, 3) that an eye (x, y, height) sees, and how far it is.
+
+    view: a unit direction, the cosine of half the width (-2: all round), and the reach.
+    owners: (m,) whose the targets are; those do not hide them. Distances are along the floor.
+    Returns -1 and the reach where none is seen.
+    """
+    x, y, z = eye[0], eye[1], eye[2]
+    best, nearest = -1, view[3]
+    for row in range(len(targets)):
+        dx, dy = targets[row, 0] - x, targets[row, 1] - y
+        distance = math.sqrt(dx * dx + dy * dy)
+        if distance > nearest or (distance == nearest and best >= 0):
+            continue
+        if dx * view[0] + dy * view[1] < view[2] * distance:
+            continue
+        if not is_hidden((x, y, z), (dx, dy, targets[row, 2] - z), skip, owners[row], parts):
+            best, nearest = row, distance
+    return best, nearest
