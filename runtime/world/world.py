@@ -75,6 +75,14 @@ class Senses(Protocol):
         """The readings of one sensor at this instant, as they are."""
         ...
 
+    def advance(self, seconds: float) -> None:
+        """Remember what wheels turned in a step that has just passed."""
+        ...
+
+    def state(self) -> Array:
+        """All that they remember."""
+        ...
+
 
 @final
 class SimulatedWorld:
@@ -157,6 +165,8 @@ class SimulatedWorld:
             for motor in self._motors:
                 motor.steer(seconds)
             self._space.space.step(seconds)
+            if self._senses is not None:
+                self._senses.advance(seconds)
             self._auditor.watch(self._steps * self._substeps + part + 1)
         self._steps += 1
         self._touches = None
@@ -169,6 +179,8 @@ class SimulatedWorld:
         digest = blake2b(self._now().tobytes(), digest_size=16)
         held = [value for motor in self._motors for value in motor.ramps.now]
         digest.update(np.array([self._steps, *held]).tobytes())
+        if self._senses is not None:
+            digest.update(self._senses.state().tobytes())
         return digest.digest()
 
     def poses(self) -> Array:
