@@ -1,0 +1,50 @@
+"""What a run says of its requirements, as data. SI throughout; `unit` says how people read it."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import final
+
+from runtime.program import Unit
+
+
+@final
+class Outcome(StrEnum):
+    """Whether a run satisfies a requirement; open where it ends too soon, or was not measured."""
+
+    SATISFIED = "satisfied"
+    VIOLATED = "violated"
+    OPEN = "open"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """The instant that decides, seconds from the run's start, and the quantities' values there."""
+
+    time: float
+    values: dict[str, float]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class RequirementResult:
+    """One requirement on one run.
+
+    low, high: the robustness is between them; equal where everything that counts was seen,
+    infinite where nothing bounds it. 0 or more satisfies. unit: of the robustness, empty where
+    its predicates have several. witness: None where what was not seen decides.
+    """
+
+    text: str
+    outcome: Outcome
+    low: float
+    high: float
+    unit: Unit
+    witness: Witness | None
+    sentence: str
+    origin: str
+
+    @property
+    def robustness(self) -> float:
+        """The bound that decides: by how much it surely holds, or surely does not."""
+        return self.high if self.outcome is Outcome.VIOLATED else self.low
