@@ -116,7 +116,7 @@ def tick(
     sizes = 1 + frame.outputs
     for j in range(frame.noisy.shape[0]):
         frame.room[5, frame.noisy[j]] = kicks[j] * frame.rest_work[frame.rest.results[sizes + j], 0]
-    flags |= _ahead(frame, x, new, commits)
+    flags |= _ahead(frame, x, new, int(commits))
     flags |= _command(frame, register, new, told)
     if commits and flags & BROKEN == 0:
         for i in range(frame.own.shape[0]):
@@ -202,7 +202,7 @@ def _settle(frame: Frame, x: Array) -> int:
 
 
 @part
-def _ahead(frame: Frame, x: Array, new: Array, commits: bool) -> int:
+def _ahead(frame: Frame, x: Array, new: Array, commits: int) -> int:
     """The state one period on, without noise; the rates at the sample stay in row 2 of the room."""
     for i in range(x.shape[0]):
         new[i] = x[i]
@@ -221,7 +221,7 @@ def _ahead(frame: Frame, x: Array, new: Array, commits: bool) -> int:
         for i in range(x.shape[0]):
             here[i] = new[i]
         _step(frame, here, h, new, int(number == 0))
-        if commits and frame.mode >= 0:
+        if commits == 1 and frame.mode >= 0:
             _look(frame, new)
             if _open_guard(frame, new) >= 0:
                 flags |= _through_guards(frame, here, h, new)

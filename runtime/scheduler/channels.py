@@ -1,0 +1,131 @@
+"""Channels: what the nodes that act want of each, resolved to one set-point."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple, final
+
+from runtime.architecture import Architecture, Channel, Way
+from runtime.arrays import Array
+from runtime.scheduler.acting import Acting
+from runtime.user_code import Callee, UserCodeError, call
+
+
+@final
+class _Member(NamedTuple):
+    """A node that reaches the channel: the place of its command among its commands."""
+
+    node: int
+    name: str
+    column: int
+
+
+@final
+class Resolver:
+    """One channel: its set-point now, and how it comes to it.
+
+    value: the set-point. is_driven: False where it rolls freely. rate: of change of the set-point
+    per second, of channels that are accelerated; else 0. in_conflict: two nodes act that never
+    should at once. is_limited: what was wanted is beyond the channel's domain.
+    """
+
+    def __init__(
+        self, architecture: Architecture, place: int, code: Callable[[str], Callee]
+    ) -> None:
+        self._channel: Channel = architecture.channels[place]
+        resolution = self._channel.resolution
+        self._members = _members(architecture, place)
+        modes = {member.node: _mode(architecture, member) for member in self._members}
+        self._accelerates = {node for node, mode in modes.items() if mode == "acceleration"}
+        self._way, self._arbiter = resolution.way, resolution.arbiter
+        if self._way in {Way.SUM, Way.BLEND, Way.FUNCTION} and 0 < len(self._accelerates) < len(
+            modes
+        ):
+            raise ValueError(
+                f"{self._channel.name}: set-points and accelerations cannot be put together"
+            )
+        self._text = resolution.function
+        self._function = code(resolution.function) if self._way is Way.FUNCTION else None
+        self.value = min(max(0.0, self._channel.low), self._channel.high)
+        self.is_driven = self._channel.rest != "coast"
+        self.rate = 0.0
+        self.in_conflict = self.is_limited = False
+
+    def resolve(self, acting: Acting, commands: Sequence[Array]) -> None:
+        """Take what the nodes that act want, by the channel's own way.
+
+        Raises:
+            UserCodeError: the user's function did not give a number.
+        """
+        acts = acting.acts
+        mine = [member for member in self._members if acts[member.node]]
+        self.rate = 0.0
+        self.in_conflict = self._way in {Way.EXCLUSIVE, Way.SINGLE} and len(mine) > 1
+        self.is_limited = False
+        self.is_driven = bool(mine) or self._channel.rest != "coast"
+        if not mine:
+            if self._channel.rest == "stop":
+                self._set(0.0, silently=True)
+            return
+        wants = [float(commands[member.node][member.column]) for member in mine]
+        wanted = self._put_together(mine, wants, acting)
+        if mine[0].node in self._accelerates:
+            self.rate = wanted
+        else:
+            self._set(wanted)
+
+    def accelerate(self, step: float) -> None:
+        """Let the set-point change by its rate for one step."""
+        if self.rate != 0.0:
+            self._set(self.value + self.rate * step)
+
+    def _put_together(
+        self, mine: Sequence[_Member], wants: Sequence[float], acting: Acting
+    ) -> float:
+        match self._way:
+            case Way.SINGLE | Way.EXCLUSIVE | Way.PRIORITY:
+                return wants[0]
+            case Way.SUM:
+                return math.fsum(wants)
+            case Way.BLEND:
+                by = acting.by.get(self._arbiter)
+                weights = [by[member.node] if by else 1.0 for member in mine]
+                total = math.fsum(weights)
+                if total <= 0.0:  # none of them is named by this arbiter
+                    weights, total = [1.0] * len(mine), float(len(mine))
+                return math.fsum(w * x for w, x in zip(weights, wants, strict=True)) / total
+            case Way.FUNCTION:
+                names = [member.name for member in mine]
+                return self._called(dict(zip(names, wants, strict=True)))
+
+    def _called(self, wants: Mapping[str, float]) -> float:
+        assert self._function is not None, "found at the beginning"
+        answer = call(self._text, self._function, MappingProxyType(wants))
+        if isinstance(answer, int | float) and math.isfinite(answer):
+            return float(answer)
+        raise UserCodeError(f"{self._text} gave {answer!r:.60}, which is no finite number")
+
+    def _set(self, wanted: float, *, silently: bool = False) -> None:
+        self.value = min(max(wanted, self._channel.low), self._channel.high)
+        self.is_limited = self.value != wanted and not silently
+
+
+def _members(architecture: Architecture, place: int) -> tuple[_Member, ...]:
+    """The nodes that reach a channel, as its resolution orders them; combined ones come first."""
+    ordered = architecture.channels[place].resolution.nodes
+    members = [
+        _Member(i, node.name, column)
+        for i, node in enumerate(architecture.nodes)
+        for column, command in enumerate(node.commands)
+        if command.channel == place
+    ]
+    return tuple(
+        sorted(
+            members,
+            key=lambda m: (ordered.index(m.node) if m.node in ordered else -1, m.node),
+        )
+    )
+
+
+def _mode(architecture: Architecture, member: _Member) -> str:
+    return architecture.nodes[member.node].commands[member.column].mode
