@@ -116,7 +116,7 @@ class Auditor:
     def _note(self, depth: float, steps: int) -> None:
         """Note the worst contact; who it is between matters only above what is usual."""
         self._depth, self._time = depth, steps * self._step
-        if depth > 1.5 * SLOP:
+        if depth > SLOP:
             touches = self._space.touches()
             worst = int(touches.depth.argmax())
             self._pair = (

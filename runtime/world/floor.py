@@ -6,6 +6,7 @@ limit surfaces): each is a joint that holds its point with a limited force. A jo
 and one on the angle, the usual recipe, is wrong for pushing: it forgets that what turns slides.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -17,9 +18,11 @@ from runtime.world.footprint import Spread, points_of
 from runtime.world.model import Shape
 
 GRAVITY: Final = 9.81
-FEET: Final = 6
-"""How many feet a thing stands on: four are enough for a box, random polygons need more."""
+FEET: Final = (2, 2)
+"""Feet along and across a footprint."""
 ROUNDS: Final = 100
+EVEN: Final = 1e-6
+"""The relative difference of widths below which a footprint has no longer axis."""
 
 
 @final
@@ -31,24 +34,25 @@ class Feet:
     shares: Array
 
 
-def feet_of(shape: Shape, spread: Spread, count: int = FEET) -> Feet:
+def feet_of(shape: Shape, spread: Spread, grid: tuple[int, int] = FEET) -> Feet:
     """Feet that hold a footprint as its whole surface would.
 
-    They are the centres of clusters of its points (k-means, from points far from one another, so
-    that chance has no part in it); their mean is the centre of mass, and their mean distance from
-    it that of the surface, so that both pure motions meet the right resistance.
+    They are the centres of clusters of its points (k-means), begun from a grid along its principal
+    axes, so that a symmetric footprint has symmetric feet and chance no part in it. Their mean is
+    the centre of mass, and their mean distance from it that of the surface, so that both pure
+    motions meet the right resistance. grid: clusters along the longer axis, and across it.
     """
     points = points_of(shape)
     points = points - points.mean(axis=0)
-    count = min(count, len(points))
-    centres = _far_apart(points, count)
+    centres = _along_axes(points, grid)
     for _ in range(ROUNDS):
         nearest = _nearest(points, centres)
-        moved = np.array([points[nearest == k].mean(axis=0) for k in range(count)])
+        moved = np.array([points[nearest == k].mean(axis=0) for k in np.unique(nearest)])
         if np.array_equal(moved, centres):
             break
         centres = moved
-    shares = np.bincount(_nearest(points, centres), minlength=count) / len(points)
+    nearest = _nearest(points, centres)
+    shares = np.bincount(nearest, minlength=len(centres)) / len(points)
     centres = centres - shares @ centres
     arm = float(shares @ np.hypot(*centres.T))
     stretched = centres * (spread.arm / arm if arm > 0.0 else 1.0)
@@ -73,11 +77,12 @@ def _nearest(points: Array, centres: Array) -> Integers:
     return nearest
 
 
-def _far_apart(points: Array, count: int) -> Array:
-    """`count` points, each as far from those before it as can be."""
-    chosen = [int(np.argmax((points**2).sum(axis=1)))]
-    distance = ((points - points[chosen[0]]) ** 2).sum(axis=1)
-    while len(chosen) < count:
-        chosen.append(int(np.argmax(distance)))
-        distance = np.minimum(distance, ((points - points[chosen[-1]]) ** 2).sum(axis=1))
-    return points[chosen]
+def _along_axes(points: Array, grid: tuple[int, int]) -> Array:
+    """A grid over the points along their principal axes, as wide as an even spread would be."""
+    (xx, xy), (_, yy) = points.T @ points / len(points)
+    difference = math.hypot(xx - yy, 2.0 * xy)
+    angle = 0.5 * math.atan2(2.0 * xy, xx - yy) if difference > EVEN * (xx + yy) else 0.0
+    axes = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    width = np.sqrt(12.0 * ((points @ axes.T) ** 2).mean(axis=0))
+    steps = [((np.arange(k) + 0.5) / k - 0.5) * w for k, w in zip(grid, width, strict=True)]
+    return np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2) @ axes

@@ -17,6 +17,8 @@ from runtime.world.model import Pose, Shape
 ITERATIONS: Final = 20
 SLOP: Final = 2e-4
 """How deep shapes stand in one another where they touch (m), so that contacts last."""
+SKIN: Final = SLOP / 2.0
+"""By so much (m) a shape is larger than its outline: outlines that touch just touch."""
 BIAS: Final = 0.8**240
 """The share of a deeper one that is left after a second: a fifth goes in each 1/240 s."""
 IDLE_SPEED: Final = 0.002
@@ -63,7 +65,8 @@ class Touches:
     """Pairs of solids that touch now, a < b each, in a fixed order; the walls come last.
 
     a, b: (k,) numbers of solids. points: (k, 2) where, in the world. impulse: (k,) of the last
-    step, of all points of the pair's parts together (N s). depth: (k,) metres.
+    step, of all points of the pair's parts together (N s). depth: (k,) metres that outlines stand
+    in one another; negative where they only just touch.
     """
 
     a: Integers
@@ -112,10 +115,10 @@ class Space:
         return states
 
     def deepest(self) -> float:
-        """How deep the deepest contact of the last step is (m); 0 where nothing touches."""
+        """How deep outlines stand in one another after the last step, at the worst (m)."""
         self._buffer.clear()
         batch.get_space_arbiters(self.space, DEPTHS, self._buffer)
-        return -min(memoryview(self._buffer.float_buf()).cast("d"), default=0.0)
+        return -min(memoryview(self._buffer.float_buf()).cast("d"), default=0.0) - SLOP
 
     def touches(self) -> Touches:
         """What touches now."""
@@ -128,7 +131,7 @@ class Space:
             a, b = sorted((self._numbers[first], self._numbers[second]))
             impulse = float(np.hypot(real[0], real[1]))
             rows += [
-                (a, b, real[2 + 3 * k], real[3 + 3 * k], impulse, -real[4 + 3 * k])
+                (a, b, real[2 + 3 * k], real[3 + 3 * k], impulse, -real[4 + 3 * k] - SLOP)
                 for k in range(count)
             ]
         # The physics keeps contacts by addresses, which differ from process to process.
@@ -156,9 +159,9 @@ def _added(space: pymunk.Space, solid: Solid) -> pymunk.Body:
     body.position = (solid.pose.x, solid.pose.y)
     band = pymunk.ShapeFilter(categories=solid.band, mask=solid.band)
     shapes: list[pymunk.Shape] = [
-        pymunk.Circle(body, disc.radius, (disc.x, disc.y)) for disc in solid.shape.discs
+        pymunk.Circle(body, disc.radius + SKIN, (disc.x, disc.y)) for disc in solid.shape.discs
     ]
-    shapes += [pymunk.Poly(body, polygon.vertices) for polygon in solid.shape.polygons]
+    shapes += [pymunk.Poly(body, polygon.vertices, radius=SKIN) for polygon in solid.shape.polygons]
     for shape in shapes:
         shape.friction = solid.friction
         shape.filter = band
@@ -170,6 +173,6 @@ def _enclose(space: pymunk.Space, arena: Array, friction: float) -> None:
     """Put up the walls: the edges of the arena, on the side of which there is no way out."""
     corners: list[tuple[float, float]] = [(float(x), float(y)) for x, y in arena]
     for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
-        wall = pymunk.Segment(space.static_body, a, b, 0.0)
+        wall = pymunk.Segment(space.static_body, a, b, SKIN)
         wall.friction = friction
         space.add(wall)

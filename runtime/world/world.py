@@ -22,12 +22,14 @@ from runtime.world.geometry import Geometry, Outline, Plan
 from runtime.world.heights import bands
 from runtime.world.kernels import nearness
 from runtime.world.layout import Layout, lay_out
-from runtime.world.model import Body, Light, Pose, Shape, Thing, World
+from runtime.world.model import Body, DriveKind, Light, Pose, Shape, Thing, World
 from runtime.world.space import Solid, Space, Touches
 
 LONGEST: Final = 1.0 / 200.0
-"""A step of a scenario that is longer (s) is several of the physics, of 1/240 s at most."""
-USUAL: Final = 240.0
+"""Seconds of the longest step of the physics."""
+FURTHEST: Final = 2.1e-3
+"""Metres that bodies may come nearer to one another in it: so deep they stand in one another where
+they meet."""
 
 
 @final
@@ -103,10 +105,10 @@ class SimulatedWorld:
         step: float,
         seed: int,
         *,
-        feet: int = FEET,
+        feet: tuple[int, int] = FEET,
         senses: "Callable[[SimulatedWorld], Senses] | None" = None,
     ) -> None:
-        """Lay the world out. feet: how many a thing stands on.
+        """Lay the world out. feet: that a thing stands on, along and across.
 
         Raises:
             NoRoomError: there is no room for what is placed at random.
@@ -124,7 +126,7 @@ class SimulatedWorld:
         self._plan = Plan(*_outlines(self.layout, self.inhabitants), arena)
         self._near = _overlapping(self._plan.geometry)
         names = self._plan.geometry.names
-        self._substeps = 1 if step <= LONGEST else math.ceil(step * USUAL)
+        self._substeps = _substeps(self.inhabitants, step)
         self._seconds = step / self._substeps
         self._auditor = Auditor(self._space, names, self._motors, self._seconds)
         self._ways = tuple(_ways(robot) for robot in self.inhabitants)
@@ -246,7 +248,7 @@ def _built(
     inhabitants: tuple[Inhabitant, ...],
     model: World,
     arena: Array,
-    feet: int,
+    feet: tuple[int, int],
 ) -> tuple[Space, tuple[Motor, ...]]:
     """The space with all solids, things on their feet and robots on their drives."""
     parts: list[Thing | Body] = [*layout.things, *(robot.body for robot in inhabitants)]
@@ -279,6 +281,23 @@ def _built(
         )
     )
     return space, motors
+
+
+def _substeps(inhabitants: tuple[Inhabitant, ...], step: float) -> int:
+    """Steps of the physics within one of a scenario: by the two fastest robots, if they meet."""
+    speeds = sorted((_fastest(robot.body) for robot in inhabitants), reverse=True)
+    return max(math.ceil(step / LONGEST - 1e-9), math.ceil(step * sum(speeds[:2]) / FURTHEST), 1)
+
+
+def _fastest(body: Body) -> float:
+    """How fast any point of a robot's outline may come towards something (m/s)."""
+    ahead = body.drive.speed * (
+        1.0 if body.drive.kind is DriveKind.DIFFERENTIAL else math.sqrt(2.0)
+    )
+    corners = [math.hypot(*corner) for part in body.shape.polygons for corner in part.vertices]
+    # A circle turns within itself, but for where its middle is.
+    arms = [*corners, *(math.hypot(disc.x, disc.y) for disc in body.shape.discs)]
+    return math.hypot(ahead, body.drive.turn * max(arms, default=0.0))
 
 
 def _outlines(
