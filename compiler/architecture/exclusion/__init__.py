@@ -1,0 +1,1 @@
+"""Whether two nodes ever act at once: proved, refuted with a state, or open."""

@@ -1,0 +1,176 @@
+"""A question as formulas: what must hold of the numbers that are sampled for an outcome to hold.
+
+Every number is named by what it is and by when: `s2@5` is signal 2 as it was last told at version
+5, so that two deciders that see the same version share one name. What a node keeps by itself, and
+which rules were holding before, are names of one decider's sample: `e0.1@3`, `h0.1@3`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, TypeAlias, final
+
+from compiler.architecture.codes import tree_of
+from compiler.architecture.exclusion.formula import (
+    EQUAL,
+    LESS,
+    MORE,
+    ZERO,
+    Formula,
+    both,
+    compared,
+    denied,
+    either,
+    truth,
+)
+from compiler.architecture.exclusion.question import Decider, Entry, How, Limit, Question
+from compiler.architecture.exclusion.search import Variable
+from runtime.arbiter import Rule
+from runtime.code import Code
+from spec_schema.expressions.rewrite import substitute
+from spec_schema.expressions.tree import Apply, Expr, Name, Number
+
+FLAG: Final = Variable(0.0, 1.0, (0.0, 1.0))
+SHORT: Final = 1.0 - 1e-9
+"""A hair less than `lasts`, as in `runtime.arbitration.rules`."""
+
+Version: TypeAlias = Callable[[int], int]
+"""The version of a signal, by its place, that a sample sees."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Sampled:
+    """One decider at one of its ticks. stamp: tells ticks apart. version: of signals, there."""
+
+    question: Question
+    place: int
+    stamp: int
+    version: Version
+
+    @property
+    def decider(self) -> Decider:
+        """Who decides."""
+        return self.question.deciders[self.place]
+
+    def name_of(self, entry: int) -> str:
+        """What stands for an entry's signal, or own value."""
+        signal = self.decider.entries[entry].signal
+        if signal >= 0:
+            return f"s{signal}@{self.version(signal)}"
+        return f"e{self.place}.{entry}@{self.stamp}"
+
+    def variables(self) -> dict[str, Variable]:
+        """Every name that its formulas may hold, and what it may be."""
+        found = {
+            self.name_of(i): variable_of(self.question, entry)
+            for i, entry in enumerate(self.decider.entries)
+            if len(entry.values) != 1
+        }
+        for i, rule in enumerate(self.decider.rules):
+            if remembers(rule, self.decider):
+                found |= {self._flag("h", i): FLAG, self._flag("r", i): FLAG}
+        return found
+
+    def outcome(self, outcome: int) -> Formula:
+        """Where an outcome holds, whatever rules held before."""
+        return both((self.inside(), self._outcome(outcome)))
+
+    def _outcome(self, outcome: int) -> Formula:
+        decider = self.decider
+        rules = [i for i, rule in enumerate(decider.rules) if rule.choice == outcome]
+        match decider.how:
+            case How.ONE | How.ANY:
+                return True
+            case How.NUMBERS:
+                return compared(self.tree(decider.codes[outcome]), ZERO, MORE)
+            case How.CONDITION:
+                return self.truth(decider.codes[outcome])
+            case How.ALL:
+                return either(map(self.holding, rules))
+            case How.FIRST:
+                return either(map(self._first, rules))
+
+    def holding(self, rule: int) -> Formula:
+        """Where a rule holds, as `runtime.arbitration.rules.Latches` has it."""
+        given = self.decider.rules[rule]
+        starts = self.truth(given.when) if given.when is not None else True
+        if not remembers(given, self.decider):
+            return starts
+        runs = given.lasts * SHORT > self.decider.period
+        goes_on = either(
+            (
+                denied(self.truth(given.until)) if given.until is not None else False,
+                truth(Name(self._flag("r", rule))) if runs else False,
+            )
+        )
+        return either((starts, both((truth(Name(self._flag("h", rule))), goes_on))))
+
+    def truth(self, code: Code) -> Formula:
+        """Where code is true at this tick."""
+        return truth(self.tree(code))
+
+    def tree(self, code: Code) -> Expr:
+        """The code, with what each name is at this tick."""
+        known = {e.name: self._entry(i, e) for i, e in enumerate(self.decider.entries)}
+        return substitute(tree_of(code), known)
+
+    def _first(self, rule: int) -> Formula:
+        return both((*(denied(self.holding(j)) for j in range(rule)), self.holding(rule)))
+
+    def _entry(self, place: int, entry: Entry) -> Expr:
+        if len(entry.values) == 1:
+            return Number(entry.values[0])
+        raw = self._raw(place, entry)
+        if entry.signal < 0 or entry.limit is not Limit.CLIPS or not self._leaves(entry):
+            return raw
+        return Apply("clip", (raw, Number(entry.low), Number(entry.high)))
+
+    def _raw(self, place: int, entry: Entry) -> Expr:
+        name = Name(self.name_of(place))
+        if entry.signal < 0 or entry.scale == 1.0:
+            return name
+        if entry.scale == -1.0:
+            return Apply("neg", (name,))
+        return Apply("mul", (name, Number(entry.scale)))
+
+    def _leaves(self, entry: Entry) -> bool:
+        """Whether the signal can be outside the entry's domain."""
+        signal = self.question.signals[entry.signal]
+        ends = sorted((signal.low * entry.scale, signal.high * entry.scale))
+        return not (entry.low <= ends[0] and ends[1] <= entry.high)
+
+    def inside(self) -> Formula:
+        """Where no reading outside its domain keeps the node from acting, or deciding."""
+        parts: list[Formula] = []
+        for i, entry in enumerate(self.decider.entries):
+            if entry.signal >= 0 and entry.limit is Limit.INHIBITS and self._leaves(entry):
+                raw = self._raw(i, entry)
+                parts.append(compared(raw, Number(entry.low), EQUAL | MORE))
+                parts.append(compared(raw, Number(entry.high), EQUAL | LESS))
+        return both(parts)
+
+    def _flag(self, letter: str, rule: int) -> str:
+        return f"{letter}{self.place}.{rule}@{self.stamp}"
+
+
+def remembers(rule: Rule, decider: Decider) -> bool:
+    """Whether it matters if the rule held before."""
+    return rule.until is not None or rule.lasts * SHORT > decider.period
+
+
+def has_memory(decider: Decider) -> bool:
+    """Whether what it decides depends on what it read before."""
+    return any(remembers(rule, decider) for rule in decider.rules)
+
+
+def variable_of(question: Question, entry: Entry) -> Variable:
+    """What an entry's signal, or own value, may be."""
+    if entry.signal >= 0:
+        signal = question.signals[entry.signal]
+        options = tuple(map(float, range(round(signal.low), round(signal.high) + 1)))
+        is_discrete = bool(signal.values)
+        return Variable(signal.low, signal.high, options if is_discrete else (), signal.unit.scale)
+    values = tuple(sorted(set(entry.values))) or tuple(map(float, range(len(entry.labels))))
+    if values:
+        return Variable(values[0], values[-1], values, entry.unit.scale)
+    return Variable(entry.low, entry.high, (), entry.unit.scale)

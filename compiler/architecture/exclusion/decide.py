@@ -1,0 +1,220 @@
+"""Do two nodes ever act at one instant? The passes, from what needs no numbers to what does.
+
+1. Structure: an arbiter that holds one choice at a time, and no choice that lets both act.
+2. Conditions: of all ways in which samples can be in effect at once (`overlap`), each a search for
+   numbers that were sampled (`search`). What rules held before is taken to be anything.
+3. Where a state is found that way, and rules have a memory, whether it is ever reached (`reach`).
+"""
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final, TypeAlias, final
+
+from compiler.architecture.exclusion.answer import Answer, Proof, Undecided
+from compiler.architecture.exclusion.conditions import Sampled, has_memory
+from compiler.architecture.exclusion.formula import Formula, both, either, holds
+from compiler.architecture.exclusion.overlap import Instant, Timing, instants, timing_of
+from compiler.architecture.exclusion.question import Actor, How, Outcome, Question
+from compiler.architecture.exclusion.reach import Reached, reached
+from compiler.architecture.exclusion.search import Found, Open, Variable, solve
+from compiler.architecture.exclusion.witness import Decision, is_plain, moments, told
+from spec_schema.wording import listed, number
+
+ONE_AT_A_TIME: Final = frozenset({How.FIRST, How.ONE})
+
+Picks: TypeAlias = Mapping[int, int]
+"""For deciders that hold one outcome at a time the one that they hold, -1 for another."""
+
+
+def decide(question: Question) -> Answer:
+    """A proof that the two never act at once, a state in which they do, or what is open."""
+    ways = list(_ways(question))
+    return _searched(question, ways) if ways else Proof(_structure(question))
+
+
+def _searched(question: Question, ways: list[Picks]) -> Answer:
+    unknown = _unknown(question)
+    timing = timing_of(question)
+    open_: Undecided | None = None
+    boxes = 0
+    for instant in instants(question, timing):
+        for way in ways:
+            case = _Case(question, timing, instant, way)
+            answer = solve(case.formula(), case.variables())
+            if isinstance(answer, Found):
+                apart = case.witness(answer, needs_one_instant=boxes > 0)
+                return unknown or _from_memory(question, timing) or apart
+            if isinstance(answer, Open):
+                open_ = open_ or case.left(answer)
+            else:
+                boxes += answer.boxes
+    if open_ is not None:
+        return open_
+    if not timing.is_whole:
+        return Undecided(
+            "their periods and response times have no short common multiple",
+            "give them periods that divide one another",
+        )
+    return Proof(_conditions(question), boxes)
+
+
+def _ways(question: Question) -> Iterator[Picks]:
+    """All ways in which deciders of one outcome at a time can let both act."""
+    used = _outcomes(question)
+    strict = sorted({d for d, _ in used if question.deciders[d].how in ONE_AT_A_TIME})
+    options = [[*sorted({o for d, o in used if d == one}), -1] for one in strict]
+    for combination in itertools.product(*options):
+        picks = dict(zip(strict, combination, strict=True))
+        if all(
+            any(picks.get(d, o) == o for d, o in need)
+            for actor in (question.first, question.second)
+            for need in actor.needs
+        ):
+            yield picks
+
+
+def _outcomes(question: Question) -> set[Outcome]:
+    needs = (*question.first.needs, *question.second.needs)
+    return {outcome for need in needs for outcome in need}
+
+
+def _structure(question: Question) -> str:
+    strict = [
+        decider.name
+        for place, decider in enumerate(question.deciders)
+        if decider.how in ONE_AT_A_TIME and any(d == place for d, _ in _outcomes(question))
+    ]
+    first, second = question.first.name, question.second.name
+    holds = "holds" if len(strict) == 1 else "hold"
+    return (
+        f"{listed(strict, last='and')} {holds} one choice at a time, "
+        f"and none lets both {first} and {second} act"
+    )
+
+
+def _conditions(question: Question) -> str:
+    who = listed([d.name for d in question.deciders if not is_plain(d)], last="and")
+    first, second = question.first.name, question.second.name
+    return f"by the conditions of {who}, {first} and {second} never act at once"
+
+
+def _unknown(question: Question) -> Undecided | None:
+    """What is said where a decider's outcomes are nobody's to know."""
+    for place, _ in sorted(_outcomes(question)):
+        decider = question.deciders[place]
+        if decider.how is How.ANY:
+            return Undecided(
+                f"{decider.name} is {decider.what}, whose choices may hold at once",
+                "resolve the channel by `priority` or `blend`, or decide by `rules`",
+            )
+    return None
+
+
+def _from_memory(question: Question, timing: Timing) -> Answer | None:
+    """Whether such a state is reached; None where nothing of before matters."""
+    if not any(has_memory(question.deciders[d]) for d, _ in _outcomes(question)):
+        return None
+    found = reached(question, timing)
+    if isinstance(found, Reached):
+        return told(question, timing, found.at, found.decisions, found.inputs)
+    return found
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Case:
+    """One instant, and one way in which both may be let act there."""
+
+    question: Question
+    timing: Timing
+    instant: Instant
+    picks: Picks
+
+    def sampled(self, place: int) -> Sampled | None:
+        """A decider at the sample that is in effect; None for none yet."""
+        at = self.instant.samples[place]
+        if at is None:
+            return None
+        return Sampled(self.question, place, at, lambda signal: self.timing.version(signal, at))
+
+    def formula(self) -> Formula:
+        """Where both act."""
+        held = [self._picked(place, outcome) for place, outcome in self.picks.items()]
+        return both((*held, self._acts(self.question.first), self._acts(self.question.second)))
+
+    def variables(self) -> dict[str, Variable]:
+        """What all names may be."""
+        found: dict[str, Variable] = {}
+        for place in range(len(self.question.deciders)):
+            sampled = self.sampled(place)
+            if sampled is not None:
+                found |= sampled.variables()
+        return found
+
+    def left(self, answer: Open) -> Undecided:
+        """What the search could not settle."""
+        parts = []
+        for sampled in filter(None, map(self.sampled, range(len(self.question.deciders)))):
+            for i, entry in enumerate(sampled.decider.entries):
+                ends = answer.box.get(sampled.name_of(i))
+                if ends is not None and entry.signal >= 0:
+                    signal = self.question.signals[entry.signal]
+                    low, high = (number(float(f"{e / signal.unit.scale:.4g}")) for e in ends)
+                    parts.append(f"{signal.name} from {low} to {high} {signal.unit.text}")
+        where = listed(list(dict.fromkeys(parts)), last="and")
+        return Undecided(
+            f"whether their conditions ever hold together is open, such as at {where}",
+            "compare the same expression in both, leave a gap between them, "
+            "or let one arbiter choose by `rules`",
+        )
+
+    def witness(self, found: Found, *, needs_one_instant: bool) -> Answer:
+        """The state, in words."""
+        decisions = []
+        for place, outcome in sorted(self._decided(found)):
+            sampled = self.sampled(place)
+            assert sampled is not None, "what is decided was sampled"
+            values = {
+                entry.name: found.values[sampled.name_of(i)]
+                for i, entry in enumerate(sampled.decider.entries)
+                if sampled.name_of(i) in found.values
+            }
+            decisions.append(Decision(place, outcome, sampled.stamp, values))
+        ticks = [(one.sampled, one.decider, one.values) for one in decisions]
+        run = moments(self.question, self.timing, ticks)
+        answer = told(self.question, self.timing, self.instant.at, decisions, run)
+        return replace(answer, help=APART) if needs_one_instant and not answer.help else answer
+
+    def _decided(self, found: Found) -> set[Outcome]:
+        """Of each need one outcome that holds."""
+        chosen = set()
+        for actor in (self.question.first, self.question.second):
+            for need in actor.needs:
+                chosen.add(next(o for o in need if self._holds(o, found)))
+        return chosen
+
+    def _holds(self, outcome: Outcome, found: Found) -> bool:
+        return holds(self._outcome(outcome), found.values)
+
+    def _acts(self, actor: Actor) -> Formula:
+        return both(either(self._outcome(o) for o in need) for need in actor.needs)
+
+    def _outcome(self, outcome: Outcome) -> Formula:
+        place, which = outcome
+        sampled = self.sampled(place)
+        if sampled is None:
+            return False
+        if place in self.picks:
+            return self.picks[place] == which
+        return sampled.outcome(which)
+
+    def _picked(self, place: int, outcome: int) -> Formula:
+        sampled = self.sampled(place)
+        return True if sampled is None or outcome < 0 else sampled.outcome(outcome)
+
+
+APART: Final = (
+    "their conditions exclude each other only where both are sampled at one instant: give them the "
+    "same period and response_time, or let one arbiter choose"
+)

@@ -1,0 +1,184 @@
+"""A state in which both act, put into the user's words and units."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import final
+
+from compiler.architecture.codes import tree_of
+from compiler.architecture.exclusion.answer import Moment, Reading, Sample, Witness
+from compiler.architecture.exclusion.overlap import Timing
+from compiler.architecture.exclusion.question import Decider, Entry, How, Question
+from compiler.architecture.exclusion.search import round_between
+from runtime.code import Code
+from spec_schema.expressions.rewrite import names_in
+from spec_schema.wording import number
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What a decider decided at a tick: the outcome that counts, and what its entries were.
+
+    values: of the signal, or own value, of each entry, by the entry's name. begins: it is where a
+    rule began to hold, which holds on.
+    """
+
+    decider: int
+    outcome: int
+    sampled: int
+    values: Mapping[str, float]
+    begins: bool = False
+
+
+def told(
+    question: Question,
+    timing: Timing,
+    at: int,
+    decisions: list[Decision],
+    inputs: tuple[Moment, ...],
+) -> Witness:
+    """The witness that these decisions are, both acting at the instant `at`."""
+    times = sorted({one.sampled for one in decisions})
+    samples = tuple(
+        _sample(question, timing, at, time, [one for one in decisions if one.sampled == time])
+        for time in times
+    )
+    return Witness(
+        first=question.first.name,
+        second=question.second.name,
+        at=timing.seconds(at),
+        samples=tuple(sample for sample in samples if sample.effects),
+        assumed=tuple(dict.fromkeys(_assumed(question, decisions))),
+        inputs=inputs,
+        help=_help(question, decisions),
+    )
+
+
+def moments(
+    question: Question, timing: Timing, ticks: Iterable[tuple[int, int, Mapping[str, float]]]
+) -> tuple[Moment, ...]:
+    """A run of the signals: each has, from a tick on, the value that a decider sampled there.
+
+    ticks: instant, decider, values by the entry's name.
+    """
+    now = [round_between(s.low, s.high, s.unit.scale) for s in question.signals]
+    for i, signal in enumerate(question.signals):
+        now[i] = signal.low if signal.values else now[i]
+    by_time: dict[int, list[tuple[int, Mapping[str, float]]]] = {0: []}
+    for time, decider, values in ticks:
+        by_time.setdefault(time, []).append((decider, values))
+    found = []
+    for time in sorted(by_time):
+        for decider, values in by_time[time]:
+            for entry in question.deciders[decider].entries:
+                if entry.signal >= 0 and entry.name in values:
+                    now[entry.signal] = values[entry.name]
+        names = (signal.name for signal in question.signals)
+        found.append(Moment(timing.seconds(time), tuple(zip(names, now, strict=True))))
+    return tuple(found)
+
+
+def _sample(
+    question: Question, timing: Timing, at: int, time: int, decisions: list[Decision]
+) -> Sample:
+    readings: dict[str, Reading] = {}
+    effects = []
+    for one in decisions:
+        decider = question.deciders[one.decider]
+        if is_plain(decider):
+            continue
+        used = names_used(decider, one.outcome)
+        for entry in decider.entries:
+            if entry.name in used and entry.name in one.values and entry.signal >= 0:
+                reading = _reading(question, entry, one.values[entry.name])
+                readings[reading.name] = reading
+        effects.append(_effect(timing, at, one, decider))
+    return Sample(timing.seconds(time), tuple(readings.values()), tuple(dict.fromkeys(effects)))
+
+
+def _effect(timing: Timing, at: int, one: Decision, decider: Decider) -> str:
+    if one.begins:
+        return f"where {decider.name} begins to hold {decider.outcomes[one.outcome]}"
+    starts = one.sampled + timing.responses[one.decider]
+    ends = starts + timing.periods[one.decider]
+    when = f"until {number(timing.seconds(ends))} s"
+    if starts == at:
+        when = f"from {number(timing.seconds(starts))} s"
+    return f"{said(decider, one.outcome)} {when}"
+
+
+def said(decider: Decider, outcome: int) -> str:
+    """What is decided, in words."""
+    match decider.how:
+        case How.CONDITION:
+            return f"{decider.name} acts"
+        case How.FIRST | How.ONE:
+            return f"{decider.name} chooses {decider.outcomes[outcome]}"
+    return f"{decider.name} lets {decider.outcomes[outcome]} hold"
+
+
+def _reading(question: Question, entry: Entry, value: float) -> Reading:
+    signal = question.signals[entry.signal]
+    label = signal.values[round(value)] if signal.values else ""
+    return Reading(signal.name, value, signal.unit, label)
+
+
+def is_plain(decider: Decider) -> bool:
+    """Whether it always holds."""
+    return decider.how is How.CONDITION and all(code.text == "1" for code in decider.codes)
+
+
+def names_used(decider: Decider, outcome: int) -> frozenset[str]:
+    """What an outcome depends on, by name."""
+    codes: list[Code] = [decider.codes[outcome]] if decider.codes else []
+    places = [i for i, rule in enumerate(decider.rules) if rule.choice == outcome]
+    if decider.how is How.FIRST and places:
+        places = list(range(places[-1] + 1))
+    for place in places:
+        rule = decider.rules[place]
+        codes += [code for code in (rule.when, rule.until) if code is not None]
+    return frozenset(name for code in codes for name in names_in(tree_of(code)))
+
+
+def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
+    """What nobody outside decides, and so may never be."""
+    for one in decisions:
+        decider = question.deciders[one.decider]
+        if decider.how is How.ONE:
+            yield f"{decider.name} is ever in {decider.outcomes[one.outcome]}"
+        used = names_used(decider, one.outcome)
+        for entry in decider.entries:
+            if entry.name not in used or entry.name not in one.values:
+                continue
+            value = one.values[entry.name]
+            if entry.signal >= 0 and question.signals[entry.signal].told:
+                yield f"{_reading(question, entry, value).text} at times"
+            elif entry.signal < 0 and len(entry.values) != 1:
+                label = entry.labels[round(value)] if entry.labels else ""
+                yield Reading(f"{decider.name}'s {entry.name}", value, entry.unit, label).text
+
+
+def _help(question: Question, decisions: list[Decision]) -> str:
+    """What would mend it."""
+    free = [
+        actor.name
+        for actor in (question.first, question.second)
+        if all(is_plain(question.deciders[d]) for need in actor.needs for d, _ in need)
+    ]
+    if free:
+        return f"nothing keeps {' or '.join(free)} from acting: name it in a choice of the arbiter"
+    shared = [
+        one
+        for one in decisions
+        if all(
+            any((one.decider, one.outcome) in need for need in actor.needs)
+            for actor in (question.first, question.second)
+        )
+    ]
+    if shared:
+        decider = question.deciders[shared[0].decider]
+        choice = decider.outcomes[shared[0].outcome]
+        return (
+            f"let choice {choice} of {decider.name} name one of them, or resolve it by `priority`"
+        )
+    return ""
