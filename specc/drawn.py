@@ -9,8 +9,8 @@ from specc.figures.portrait import draw_portrait
 from specc.figures.style import Picture, rendered
 from specc.figures.style_names import Style
 from specc.files import json_bytes, unknown_suffix, write_atomically
-from specc.portrait_text import record
 from specc.portraying import Found, Sweep
+from specc.texts.portrait import record
 from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import Portrait
 

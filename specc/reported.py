@@ -12,7 +12,7 @@ from specc.pages.report_page import report_page
 from specc.pages.runs_page import runs_page
 from specc.runs import Outcome, Runs, Unusable, runs_of, source_of, unusable, verifications
 from specc.runs_record import run_record, runs_record
-from specc.runs_text import runs_text
+from specc.texts.runs import runs_text
 from specc.verifying import Verification
 from verifier.report.examination_text import examination_text
 from verifier.report.findings import Finding, Level, Rule, findings_of

@@ -78,7 +78,7 @@ def _check_claims(
 
     Each is printed as soon as it is decided; 130 where the user does not wait for the rest.
     """
-    from specc.claims_text import finding_record, totals_text
+    from specc.texts.claims import finding_record, totals_text
 
     warmed(None)
     found: list[tuple[Program, Finding]] = []
@@ -145,7 +145,7 @@ def _unjudged(files: Sequence[Path], found: "Sequence[tuple[Program, Finding]]")
 
 
 def _print_claim(program: "Program", finding: "Finding", form: ReportFormat) -> None:
-    from specc.claims_text import STYLES, finding_text
+    from specc.texts.claims import STYLES, finding_text
     from verifier.report.annotations import annotation
 
     if form is ReportFormat.TEXT:

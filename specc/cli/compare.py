@@ -59,9 +59,9 @@ def compare(
     `specc compare code.yaml sketch.yaml --tolerance 0.2 --set speed=0.4 -o difference.svg`
     """
     from specc.comparing import compare_behaviors
-    from specc.comparison_text import STYLES, comparison_record, comparison_text, verdict_text
     from specc.files import require_suffix
     from specc.loading import load_program
+    from specc.texts.comparison import STYLES, comparison_record, comparison_text, verdict_text
     from verifier.topology.comparing.comparison import Tolerances
 
     require_suffix(output, ".svg", ".png", ".pdf")

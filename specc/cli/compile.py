@@ -34,8 +34,9 @@ def compile_(
     `specc compile specs/van_der_pol.yaml --dump`
     """
     from compiler.dump import dump as dumped
-    from specc import loading, printing
+    from specc import loading
     from specc.files import require_suffix
+    from specc.texts import results
 
     require_suffix(output, ".specc")
 
@@ -50,7 +51,7 @@ def compile_(
     path = output or Path(f"{compiled.program.name}.specc")
     data = loading.write_artifact(compiled.program, path)
     if form is Format.JSON:
-        print_json(printing.compile_record(compiled, path, data))
+        print_json(results.compile_record(compiled, path, data))
         return
-    print_text(printing.compile_summary(compiled))
+    print_text(results.compile_summary(compiled))
     say(f"wrote {path} ({len(data):,} bytes)", "bold")

@@ -34,8 +34,8 @@ def init(
 
     `specc init drive --from run.mcap`
     """
-    from specc import beginnings
     from specc.files import write_atomically
+    from specc.first_spec import beginnings
 
     if listing:
         print_text(beginnings.list_templates())
@@ -55,8 +55,8 @@ def init(
 
 def _from_log(log: Path, name: str) -> str:
     """A first spec for a log, which is listed on the way."""
-    from specc.first_spec import spec_for
-    from specc.inventory_text import describe
+    from specc.first_spec.inventory_text import describe
+    from specc.first_spec.written import spec_for
     from verifier.traces.inventory import inspect
 
     inventory = inspect(log)

@@ -82,7 +82,7 @@ def portrait(
     """
     from specc import loading, portraying
     from specc.files import require_suffix
-    from specc.portrait_text import record, summary
+    from specc.texts.portrait import record, summary
 
     require_suffix(output, ".svg", ".png", ".pdf", ".json")
     warmed(spec)

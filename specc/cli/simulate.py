@@ -41,8 +41,9 @@ def simulate(
 
     `specc simulate specs/wall_follow.yaml --start distance='40 cm' -d 10 --format json`
     """
-    from specc import loading, printing, running
+    from specc import loading, running
     from specc.files import require_suffix
+    from specc.texts import results
 
     require_suffix(output, ".mcap", ".csv")
     warmed(spec)
@@ -55,10 +56,10 @@ def simulate(
         record(program, rollout, output)
         say(f"wrote {output}", "bold")
     if form is Format.JSON:
-        print_json(printing.rollout_record(program, rollout))
+        print_json(results.rollout_record(program, rollout))
     else:
-        print_text(printing.rollout_summary(program, rollout))
-    if told := printing.incomplete(program, rollout):
+        print_text(results.rollout_summary(program, rollout))
+    if told := results.incomplete(program, rollout):
         say(told, "bold red")
         return Status.NO
     return Status.YES

@@ -119,7 +119,7 @@ def _print(runs: "Runs", form: ReportFormat, *, is_one: bool) -> None:
     from specc.reported import findings_by_source
     from specc.runs import verifications
     from specc.runs_record import run_record, runs_record
-    from specc.runs_text import runs_table
+    from specc.texts.runs import runs_table
     from verifier.report.annotations import as_annotations
     from verifier.report.examination_text import examination_text
 

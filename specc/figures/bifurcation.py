@@ -11,7 +11,6 @@ from typing import Final, TypeVar
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from specc.branches_text import bifurcation_sentence
 from specc.figures.curves import CYCLE_DASHES, Dashes
 from specc.figures.legend import Entry, Look, draw_legend, line_entry
 from specc.figures.palettes import PALETTES, Palette
@@ -29,6 +28,7 @@ from specc.figures.paper import (
 from specc.figures.quantities import axis_label
 from specc.figures.style import bare, look
 from specc.figures.style_names import Style
+from specc.texts.branches import bifurcation_sentence
 from verifier.topology.branches.continuation import Branches, Change
 from verifier.topology.features import AxisRange, PointKind, Stability
 

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from runtime.arrays import Array
-from specc.comparison_text import taken_lines, verdict_text
 from specc.figures.axes_of_states import name_x, name_y, same_scale, shown, split_at_seams
 from specc.figures.legend import Entry, Look, draw_legend, line_entry
 from specc.figures.markers import SHAPES
@@ -27,6 +26,7 @@ from specc.figures.paper import (
 )
 from specc.figures.style import look
 from specc.figures.style_names import Style
+from specc.texts.comparison import taken_lines, verdict_text
 from verifier.topology.comparing.comparison import Comparison
 from verifier.topology.comparing.matching import Fate
 from verifier.topology.features import PointKind

@@ -27,7 +27,7 @@ from specc.figures.plane import draw_plane
 from specc.figures.space import draw_space, size_of_space
 from specc.figures.style import look
 from specc.figures.style_names import Style
-from specc.portrait_text import proof_sentences
+from specc.texts.portrait import proof_sentences
 from verifier.topology.features import Portrait
 
 MOST: Final = (4.7, 4.3)

@@ -8,7 +8,7 @@ from specc.figures.quantities import number, seconds
 from specc.pages.page import Page, RunRow, RunsPage
 from specc.pages.report_page import SIGNS, gathered, rendered
 from specc.runs import Outcome, Pool, Runs, Unusable, counted, verifications
-from specc.runs_text import advice_of, column_of, columns_of, reasons_of
+from specc.texts.runs import advice_of, column_of, columns_of, reasons_of
 from specc.verifying import Verification
 from verifier.report.report import Coverage, Report, Verdict
 from verifier.report.wording import percent

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from specc.claiming import check_claims
-from specc.claims_text import finding_record, finding_text, totals_text
 from specc.loading import load_program
+from specc.texts.claims import finding_record, finding_text, totals_text
 from verifier.topology.claims.findings import Ruling
 
 FOLDER = Path(__file__).parents[1] / "golden" / "refuted"

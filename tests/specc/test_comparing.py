@@ -11,9 +11,9 @@ from compiler.check import check
 from runtime.program import Program
 from spec_schema.diagnostics import SpecError
 from specc.comparing import compare_behaviors
-from specc.comparison_text import comparison_record, comparison_text, verdict_text
 from specc.figures.difference import draw_difference
 from specc.loading import load_program
+from specc.texts.comparison import comparison_record, comparison_text, verdict_text
 from verifier.topology.comparing.comparison import Comparison, Tolerances
 from verifier.topology.comparing.matching import Fate
 

@@ -11,7 +11,7 @@ import specc
 from runtime.arrays import frozen
 from specc.drawn import picture_of
 from specc.figures.style_names import Style
-from specc.portrait_text import portrait_summary, summary
+from specc.texts.portrait import portrait_summary, summary
 from tests.specc.portrait_scenes import basins, circle, everything, point
 from verifier.topology.branches.continuation import Change
 from verifier.topology.features import Attractor, PointKind, Stability

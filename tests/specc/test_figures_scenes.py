@@ -10,15 +10,15 @@ from matplotlib.colors import same_color
 from matplotlib.patches import Rectangle
 
 from runtime.arrays import frozen
-from specc.branches_text import branches_record, branches_summary
 from specc.drawn import picture_of
 from specc.figures.curves import at_jumps, guard_stroke
 from specc.figures.palettes import PALETTES
 from specc.figures.portrait import draw_portrait
 from specc.figures.style import rendered
 from specc.figures.style_names import Style
-from specc.portrait_text import portrait_summary, proof_sentences, summary
 from specc.portraying import Sweep
+from specc.texts.branches import branches_record, branches_summary
+from specc.texts.portrait import portrait_summary, proof_sentences, summary
 from tests.specc.portrait_scenes import (
     X,
     basins,

@@ -10,7 +10,7 @@ from compiler.check import check
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import load
-from specc.first_spec import spec_for
+from specc.first_spec.written import spec_for
 from specc.verifying import verify
 from verifier.traces.inventory import FieldInfo, Inventory, TopicInfo, inspect
 

@@ -11,8 +11,8 @@ from spec_schema.source import Source
 from specc.pages.prose import prose
 from specc.pages.runs_page import top_advice, top_reasons
 from specc.runs import Pool, Runs, Unusable
-from specc.runs_text import runs_table
 from specc.spec_finding import Found
+from specc.texts.runs import runs_table
 from specc.verifying import Verification
 from tests.specc.examination_scenes import diagnosis, examination, passed, switching
 from verifier.fidelity.verify import Judgement

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from specc.portrait_text import portrait_summary
+from specc.texts.portrait import portrait_summary
 from tests.verifier.topology_scenes import line, plane
 from verifier.topology.ends.shares import share_within
 from verifier.topology.portrait import Detail, portrait

@@ -8,7 +8,7 @@ from specc.figures.palettes import PALETTES
 from specc.figures.paper import axes_at, new_figure
 from specc.figures.portrait import draw_portrait
 from specc.figures.style_names import Style
-from specc.portrait_text import portrait_summary
+from specc.texts.portrait import portrait_summary
 from tests.verifier.topology_scenes import OSCILLATOR, line, plane
 from verifier.topology.portrait import Detail, portrait
 

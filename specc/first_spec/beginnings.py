@@ -27,7 +27,7 @@ def companions(template: str) -> dict[str, str]:
 def _library() -> dict[str, str]:
     folder = resources.files("specc") / "templates"
     if not folder.is_dir():  # an editable install: the library stands at the repository's root
-        folder = Path(__file__).resolve().parent.parent / "specs"
+        folder = Path(__file__).resolve().parents[2] / "specs"
     entries = sorted(folder.iterdir(), key=lambda entry: entry.name)
     return {
         entry.name: entry.read_text(encoding="utf-8")

@@ -9,8 +9,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from specc.first_guess import Guess, Variable, guess
-from specc.inventory_text import MOST_FIELDS, looks
+from specc.first_spec.guesses import Guess, Variable, guess
+from specc.first_spec.inventory_text import MOST_FIELDS, looks
 from verifier.traces.alike import is_asked
 from verifier.traces.inventory import Inventory
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, final
 
-from specc.beginnings import identifier
 from specc.faults import fault
+from specc.first_spec.beginnings import identifier
 from verifier.traces.alike import is_asked, meaning
 from verifier.traces.inventory import FieldInfo, Inventory, TopicInfo
 

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from specc.branches_text import branches_record, branches_summary
 from specc.portraying import Found, Sweep
+from specc.texts.branches import branches_record, branches_summary
 from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import (
     Basins,
