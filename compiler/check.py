@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from compiler.check_behavior import Checked, check_behavior
+from compiler.check_kinds import check_kind
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Examined, examine
@@ -27,9 +28,12 @@ def check(path: Path | str) -> tuple[Diagnostic, ...]:
 def check_examined(examined: Examined) -> tuple[Diagnostic, ...]:
     """The mistakes in the spec's shape, and what the passes say of the rest of it."""
     loaded = examined.loaded
-    if loaded is None or not isinstance(loaded.spec, BehaviorSpec):
+    if loaded is None:
         return examined.mistakes
-    found = check_behavior(loaded, loaded.spec).findings.diagnostics
+    if isinstance(loaded.spec, BehaviorSpec):
+        found = check_behavior(loaded, loaded.spec).findings.diagnostics
+    else:
+        found = check_kind(loaded)
     told = {mistake.span for mistake in examined.mistakes}
     return (*examined.mistakes, *(d for d in found if _is_news(d, examined.lost, told)))
 

@@ -1,0 +1,1 @@
+"""Architectures: what they name, how it is wired, what is wrong with it, and the program of it."""

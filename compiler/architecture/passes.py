@@ -1,0 +1,77 @@
+"""The passes of an architecture in one screen: files, wires, channels, time, levels, program.
+
+gather        what is named: a body, behaviors, arbiters       library, parts, bodies, arbiters
+board         every signal, its unit and its domain            signals
+inputs        each wire from end to end                        wires
+commands      what acts on which channel, as what              channels
+choices       what each choice of an arbiter means             lower
+channels      how conflicts are resolved                       resolutions, governing
+order         circles without a delay                          graph
+timing        steps and delays against the field               timing
+levels        what controls what                               levels
+standing      imitations, what is hypothetical, what is idle   standing
+"""
+
+from dataclasses import dataclass
+from typing import final
+
+from compiler.architecture.channels import commands_of
+from compiler.architecture.graph import order_of
+from compiler.architecture.levels import check_levels
+from compiler.architecture.library import Library
+from compiler.architecture.lower import check_replaces, lower, lower_acts_when, lower_choices
+from compiler.architecture.parts import Parts, gather
+from compiler.architecture.resolutions import channels_of
+from compiler.architecture.signals import board_of
+from compiler.architecture.standing import check_standing
+from compiler.architecture.timing import check_timing
+from compiler.architecture.wires import Board, inputs_of
+from compiler.findings import Findings
+from runtime.architecture import Architecture
+from runtime.world.model import Body
+from spec_schema.architecture import ArchitectureSpec
+from spec_schema.diagnostics import Diagnostic
+from spec_schema.load import Loaded
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class CompiledArchitecture:
+    """An architecture with its body, and the warnings and choices on the way to it."""
+
+    architecture: Architecture
+    body: Body
+    warnings: tuple[Diagnostic, ...]
+    notes: tuple[str, ...] = ()
+
+
+def compile_parts(
+    spec: ArchitectureSpec, loaded: Loaded, library: Library, findings: Findings
+) -> CompiledArchitecture | None:
+    """The passes, in order; None where something can't be run, which the findings tell."""
+    parts = gather(spec, loaded, library, findings)
+    signals = board_of(parts, findings)
+    board = Board(signals, {signal.name: i for i, signal in enumerate(signals)})
+    nodes = parts.nodes
+    inputs = {name: inputs_of(part, board, parts, findings) for name, part in nodes.items()}
+    commands = {name: commands_of(part, parts, findings) for name, part in nodes.items()}
+    choices = {name: lower_choices(part, parts, findings) for name, part in nodes.items()}
+    acts_when = {name: lower_acts_when(part, findings) for name, part in nodes.items()}
+    for part in nodes.values():
+        check_replaces(part, parts, findings)
+    channels = channels_of(commands, parts, findings)
+    order = order_of(inputs, signals, parts, findings)
+    check_timing(parts, findings)
+    levels = check_levels(inputs, signals, parts, findings)
+    if _is_whole(parts) and not findings.has_errors:
+        check_standing(inputs, commands, signals, parts, findings)
+    if parts.body is None or not _is_whole(parts) or findings.has_errors:
+        return None
+    architecture = lower(
+        parts, signals, inputs, commands, choices, acts_when, channels, levels, order
+    )
+    return CompiledArchitecture(architecture, parts.body.body, findings.diagnostics, findings.notes)
+
+
+def _is_whole(parts: Parts) -> bool:
+    return parts.body is not None and all(part.is_known for part in parts.nodes.values())

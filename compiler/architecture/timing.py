@@ -1,0 +1,200 @@
+"""Time: what is too slow for the field that it serves, and the step that all times share."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final, final
+
+import numpy as np
+
+from compiler.architecture.parts import Part, Parts, is_read
+from compiler.findings import Findings
+from runtime.arrays import Array
+from runtime.flow import Flow, Source, flow_of, in_one_mode, jacobian
+from runtime.program import Kind, Program
+from spec_schema.places import Path
+
+MOST: Final = 0.5
+"""Of lag * rate. Late feedback x' = -k x(t - lag) overshoots from k * lag = 1/e = 0.37 on and is
+unstable from pi/2 = 1.57 on; with a period and a response time the lag is between response_time
+and period + response_time, in the mean half a period less (Michiels, Niculescu 2014, chapter 1)."""
+
+POINTS: Final = 600
+SEED: Final = 20261122
+LEAST_STEP: Final = Fraction(1, 10_000)
+"""Seconds: below this a step of the world costs more than it tells."""
+FINEST: Final = 10**7
+"""Times are read as fractions of a second with at most this denominator."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Fastest:
+    """The fastest rate (1/s) at which what a behavior senses answers what it drives."""
+
+    rate: float
+    where: dict[str, float]
+
+
+def check_timing(parts: Parts, findings: Findings) -> None:
+    """Findings for nodes that are too slow, and for times that no common step divides."""
+    for part in parts.nodes.values():
+        if part.program is None:
+            continue
+        if part.program.field.is_map:
+            _check_map(part, part.program, findings)
+        else:
+            _check_lag(part, part.program, findings)
+    _check_common_step(parts, findings)
+
+
+def _check_map(part: Part, program: Program, findings: Findings) -> None:
+    every = program.field.every
+    if not math.isclose(every, part.period, rel_tol=1e-9):
+        message = f"{program.name} is a map that makes a step every {seconds(every)}"
+        remedy = f"write 'period: {seconds(every)}'"
+        findings.error("S351", (*part.path, "period"), message, remedy)
+
+
+def _check_lag(part: Part, program: Program, findings: Findings) -> None:
+    fastest = fastest_of(program, part)
+    if fastest.rate * part.lag <= MOST:
+        return
+    units = {variable.name: variable.unit for variable in program.states}
+    where = ", ".join(
+        f"{name} = {value / units[name].scale:.3g} {units[name].text}".removesuffix(" 1")
+        for name, value in fastest.where.items()
+    )
+    allowed = MOST / fastest.rate
+    message = (
+        f"{part.name} answers up to {seconds(part.lag)} late, and its field changes at up to "
+        f"{fastest.rate:.3g} per second (at {where})"
+    )
+    response = part.response_time
+    if response < 0.8 * allowed:
+        remedy = f"write 'period: {seconds(_rounded(allowed - response))}' or less"
+    else:
+        half = seconds(_rounded(allowed / 2))
+        remedy = f"write 'period: {half}' and 'response_time: {half}' or less"
+    findings.error("S353", (*part.path, "period"), message, f"{remedy}, or lower its gains")
+
+
+def fastest_of(program: Program, part: Part | None = None) -> Fastest:
+    """The largest eigenvalue of the field where it feeds back, over its domain.
+
+    Over the states that are sensed as well as driven; controls at the values that they may have
+    in the architecture. Sampled at points that do not depend on anything but the program.
+    """
+    back = [
+        i
+        for i, state in enumerate(program.states)
+        if is_read(state, program) and state.is_driven and state.kind is not Kind.DISCRETE
+    ]
+    flow = None if not back else _flow(program)
+    if flow is None:
+        return Fastest(0.0, {})
+    x, u = _points(program, part)
+    with np.errstate(all="ignore"):
+        slopes = jacobian(in_one_mode(flow), x, u)[:, back][:, :, back]
+    known = np.all(np.isfinite(slopes), axis=(1, 2))
+    if not known.any():
+        return Fastest(0.0, {})
+    rates = np.max(np.abs(np.linalg.eigvals(slopes[known])), axis=1)
+    place = int(np.argmax(rates))
+    names = [program.states[i].name for i in back]
+    where = x[known][place][back]
+    found = dict(zip(names, map(float, where), strict=True))
+    return Fastest(float(rates[place]), found)
+
+
+def _flow(program: Program) -> Flow | None:
+    """The field as it runs, else its formula; None where nothing was tabulated yet."""
+    if program.field.terms:
+        return flow_of(program)
+    return None if program.field.formula is None else flow_of(program, Source.FORMULA)
+
+
+def _points(program: Program, part: Part | None) -> tuple[Array, Array]:
+    """States (N, n) and controls (N, p) all over their domains, corners of the controls too."""
+    random = np.random.Generator(np.random.Philox(SEED))
+    states = np.column_stack(
+        [
+            random.integers(0, len(s.values), POINTS).astype(np.float64)
+            if s.kind is Kind.DISCRETE
+            else random.uniform(s.low, s.high, POINTS)
+            for s in program.states
+        ]
+    )
+    wires = part.spec.set if part is not None else {}
+    columns = []
+    for control in program.controls:
+        low, high = control.low, control.high
+        wire = wires.get(control.name)
+        if wire is None or wire.source is None:
+            low = high = control.default
+        columns.append(random.uniform(low, high, POINTS) if low < high else np.full(POINTS, low))
+    controls = np.column_stack(columns) if columns else np.empty((POINTS, 0))
+    return states, controls
+
+
+def _rounded(value: float) -> float:
+    """A time that is easy to write: two digits, rounded down."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return math.floor(value / digit + 1e-9) * digit
+
+
+def seconds(value: float) -> str:
+    """A time as one writes it.
+
+    >>> seconds(0.05), seconds(2.0)
+    ('50 ms', '2 s')
+    """
+    return f"{value:.4g} s" if value >= 1.0 else f"{1000 * value:.4g} ms"
+
+
+def exact(value: float) -> Fraction:
+    """A time as the fraction that was meant: 1/30 s is no whole number of nanoseconds."""
+    return Fraction(value).limit_denominator(FINEST)
+
+
+def common(times: Iterable[Fraction]) -> Fraction:
+    """The longest time that divides all of them; 0 where there are none."""
+    found = Fraction(0)
+    for time in times:
+        denominator = math.lcm(found.denominator, time.denominator)
+        whole = math.gcd(
+            found.numerator * (denominator // found.denominator),
+            time.numerator * (denominator // time.denominator),
+        )
+        found = Fraction(whole, denominator)
+    return found
+
+
+def times_of(parts: Parts) -> list[tuple[Path, float]]:
+    """Every time that the step must divide, and where it stands; sensors' at the body."""
+    sensors = () if parts.body is None else parts.body.body.sensors
+    of_body: Path = ("body",)
+    found = [(of_body, time) for s in sensors for time in (s.every, s.latency)]
+    for part in parts.nodes.values():
+        found += [((*part.path, "period"), part.period)]
+        found += [((*part.path, "response_time"), part.response_time)]
+    return found
+
+
+def _check_common_step(parts: Parts, findings: Findings) -> None:
+    """A finding at the first time that leaves no step of 0.1 ms."""
+    shared = Fraction(0)
+    for path, time in times_of(parts):
+        if time == 0.0:
+            continue
+        with_it = common((shared, exact(time)))
+        if with_it < LEAST_STEP:
+            message = f"no step of 0.1 ms or more divides {seconds(time)} and the times before it"
+            remedy = "write times that are multiples of one another, or of 1 ms"
+            if shared:
+                near = max(round(exact(time) / shared), 1) * shared
+                remedy = f"write {seconds(float(near))}"
+            findings.error("S352", path, message, remedy)
+            return
+        shared = with_it

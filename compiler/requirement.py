@@ -1,0 +1,136 @@
+"""Requirements of a scenario: sentences, their names and dimensions checked, as code."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, final
+
+from compiler.findings import Findings
+from compiler.guard_sign import signed
+from compiler.lower_parts import code_of
+from runtime.requirement import Formula, Operator, Requirement
+from spec_schema.dimension import DIMENSIONLESS, Dimension, describe
+from spec_schema.expressions.dimensions import dimension_of
+from spec_schema.expressions.rewrite import names_in, resolve_texts, substitute
+from spec_schema.expressions.tree import Expr, Name, Number, walk
+from spec_schema.faults import Fault
+from spec_schema.places import Path
+from spec_schema.requirement_sentences import (
+    Predicate,
+    RequirementError,
+    Sentence,
+    is_quantity,
+    names_of,
+    predicates_of,
+    read_requirement,
+)
+from spec_schema.suggest import did_you_mean
+from spec_schema.units import Unit, parse_quantity
+
+MOST_NAMED: Final = 6
+"""How many quantities a help lists."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A quantity of a run: its dimension, and the values of a discrete one."""
+
+    dimension: Dimension
+    values: tuple[str, ...] = ()
+    is_discrete: bool = False
+
+
+def lower_requirement(
+    text: str, path: Path, known: Mapping[str, Measured], findings: Findings
+) -> Requirement | None:
+    """What a run must satisfy; None, and findings, where the sentence can't be used."""
+    try:
+        sentence = read_requirement(text)
+    except RequirementError as error:
+        for fault in error.faults:
+            findings.fault(path, fault)
+        return None
+    faults = [*_unknown(sentence, known)]
+    margins: dict[int, Expr] = {}
+    dimensions: list[Dimension | None] = []
+    for predicate in predicates_of(sentence):
+        margin, dimension, more = _margin(predicate, known)
+        faults += more
+        dimensions.append(dimension)
+        if margin is not None:
+            margins[id(predicate)] = margin
+    for fault in sorted(set(faults)):
+        findings.fault(path, fault)
+    if faults:
+        return None
+    unit = _shown_in(sentence, dimensions)
+    quantities = dict.fromkeys(n for m in margins.values() for n in sorted(names_in(m)))
+    formula = tuple(_postfix(sentence, margins))
+    origin = findings.origin(path)
+    return Requirement(text, formula, tuple(quantities), unit.text, unit.scale, origin)
+
+
+def _unknown(sentence: Sentence, known: Mapping[str, Measured]) -> list[Fault]:
+    found = []
+    for node in names_of(sentence):
+        if node.name not in known:
+            message = f"a run has no quantity '{node.name}'"
+            found.append(Fault(node.start, node.end, "S371", message, _meant(node.name, known)))
+    return found
+
+
+def _meant(name: str, known: Mapping[str, Measured]) -> str:
+    meant = did_you_mean(name, sorted(known))
+    if meant:
+        return meant
+    ending = [other for other in known if other.endswith(f".{name.rpartition('.')[2]}")]
+    if ending:
+        return f"did you mean {' or '.join(ending[:MOST_NAMED])}?"
+    owner = name.partition(".")[0]
+    beside = sorted(other for other in known if other.partition(".")[0] == owner) or sorted(known)
+    more = ", ..." if len(beside) > MOST_NAMED else ""
+    return f"there are {', '.join(beside[:MOST_NAMED])}{more}"
+
+
+def _margin(
+    predicate: Predicate, known: Mapping[str, Measured]
+) -> tuple[Expr | None, Dimension | None, list[Fault]]:
+    """Robustness of a comparison in SI: 0 or more where it holds; its dimension; its faults."""
+    condition = predicate.condition
+    names = {node.name for node in walk(condition) if isinstance(node, Name)}
+    quantities = {name: parse_quantity(name) for name in names if is_quantity(name)}
+    dimensions = {name: one.dimension for name, one in known.items() if name in names}
+    dimensions |= {name: one.unit.dimension for name, one in quantities.items()}
+    faults = dimension_of(condition, dimensions)[1]
+    values = {name: known[name].values for name in names if name in known and known[name].values}
+    resolved, more = resolve_texts(condition, values)
+    discrete = {name for name in names if name in known and known[name].is_discrete}
+    margin = signed(resolved, discrete)
+    if margin is None:
+        message = "two numbers are hardly ever equal"
+        fault = Fault(predicate.start, predicate.end, "S374", message, "write `abs(a - b) < ...`")
+        return None, None, [*faults, *more, *([fault] if names <= {*known, *quantities} else [])]
+    dimension = None if faults else dimension_of(margin, dimensions)[0]
+    numbers = {name: Number(one.value) for name, one in quantities.items()}
+    return substitute(margin, numbers), dimension, [*faults, *more]
+
+
+def _shown_in(sentence: Sentence, dimensions: list[Dimension | None]) -> Unit:
+    """The unit in which robustness is shown: as written, where all predicates have one."""
+    first = dimensions[0]
+    if first is None or any(dimension != first for dimension in dimensions):
+        return Unit("", 1.0, DIMENSIONLESS)
+    for predicate in predicates_of(sentence):
+        for node in walk(predicate.condition):
+            if isinstance(node, Name) and is_quantity(node.name):
+                unit = parse_quantity(node.name).unit
+                if unit.dimension == first:
+                    return unit
+    return Unit(describe(first), 1.0, first)
+
+
+def _postfix(sentence: Sentence, margins: Mapping[int, Expr]) -> list[Formula]:
+    if isinstance(sentence, Predicate):
+        return [Formula(Operator.PREDICATE, code_of(margins[id(sentence)]), 0.0, None)]
+    parts = [one for part in sentence.parts for one in _postfix(part, margins)]
+    return [*parts, Formula(Operator(sentence.operator), None, sentence.first, sentence.last)]

@@ -1,0 +1,69 @@
+"""Where robots and a world meet: free places to start from, and names that sensors look for."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from compiler.findings import Findings
+from compiler.world.overlap import overlap, within
+from runtime.scenario import Robot
+from runtime.world.model import Sensor, World
+from spec_schema.places import Path
+from spec_schema.suggest import did_you_mean, there_are
+
+LIGHT: Final = "light"
+
+
+def check_starts(world: World, robots: Sequence[Robot], findings: Findings) -> None:
+    """A finding for each robot that would start in a wall, a thing, or another robot."""
+    for i, robot in enumerate(robots):
+        pose, body = robot.start.pose, robot.body
+        if pose is None:
+            continue
+        path: Path = ("robots", robot.name, "at")
+        remedy = "move it, or write 'at: random'"
+        if not within(body.shape, pose, world.arena):
+            message = f"{robot.name} would not start within the walls of {world.name}"
+            findings.error("S327", path, message, remedy)
+        for thing in world.things:
+            meets = thing.low < body.high and body.low < thing.high
+            if meets and overlap(body.shape, pose, thing.shape, thing.pose):
+                message = f"{robot.name} would start inside {thing.name}"
+                findings.error("S327", path, message, remedy)
+        for other in robots[:i]:
+            at, its = other.start.pose, other.body
+            meets = its.low < body.high and body.low < its.high
+            if at is not None and meets and overlap(body.shape, pose, its.shape, at):
+                message = f"{robot.name} would start inside {other.name}"
+                findings.error("S327", path, message, remedy)
+
+
+def check_sights(world: World, robots: Sequence[Robot], findings: Findings) -> None:
+    """A finding for each thing that a sensor looks for and the world has not."""
+    names = [
+        LIGHT,
+        *(light.name for light in world.lights),
+        *(thing.name for thing in world.things),
+    ]
+    names += [f"{scatter.name}_*" for scatter in world.scattered]
+    names += [robot.name for robot in robots]
+    copies = {f"{s.name}_{i + 1}" for s in world.scattered for i in range(s.count)}
+    for robot in robots:
+        for sensor in robot.body.sensors:
+            for wanted in sensor.of:
+                if wanted not in names and wanted not in copies:
+                    _tell(wanted, sensor, robot, world, names, findings)
+
+
+def _tell(
+    wanted: str,
+    sensor: Sensor,
+    robot: Robot,
+    world: World,
+    names: Sequence[str],
+    findings: Findings,
+) -> None:
+    message = f"{sensor.name} of {robot.name} looks for '{wanted}', and {world.name} has none"
+    remedy = did_you_mean(wanted, names) or there_are(names)
+    if f"{wanted}_*" in names:
+        remedy = f"write '{wanted}_*' for all copies that are scattered"
+    findings.error("S322", ("robots", robot.name), message, remedy, key=True)

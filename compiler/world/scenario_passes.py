@@ -1,0 +1,174 @@
+"""Scenarios: robots in a world, the step of time, and what is required of the run."""
+
+import math
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import final
+
+from compiler.architecture.library import Library
+from compiler.architecture.passes import CompiledArchitecture, compile_parts
+from compiler.architecture.timing import LEAST_STEP, common, exact, seconds
+from compiler.findings import Findings
+from compiler.lower_parts import origin_of
+from compiler.requirement import lower_requirement
+from compiler.world.meeting import check_sights, check_starts
+from compiler.world.quantities_of_run import quantities_of
+from compiler.world.shapes import pose_of, positive
+from compiler.world.starts import beginnings_of
+from compiler.world.world import lower_world
+from runtime.requirement import Requirement
+from runtime.scenario import Robot, Scenario, Start
+from runtime.world.model import World
+from spec_schema.architecture import ArchitectureSpec
+from spec_schema.diagnostics import Diagnostic, Severity
+from spec_schema.load import Loaded
+from spec_schema.places import Path
+from spec_schema.scenario import RobotSpec, ScenarioSpec
+from spec_schema.world import WorldSpec
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class CompiledScenario:
+    """A scenario, and the warnings and choices on the way to it."""
+
+    scenario: Scenario
+    warnings: tuple[Diagnostic, ...]
+    notes: tuple[str, ...] = ()
+
+
+@final
+@dataclass(eq=False, slots=True)
+class Robots:
+    """The robots of a scenario as they are read; the architectures each compiled once."""
+
+    found: list[Robot] = field(default_factory=list)
+    is_whole: bool = True
+    compiled: dict[str, CompiledArchitecture | None] = field(default_factory=dict)
+    warnings: tuple[Diagnostic, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def compile_parts_of_scenario(
+    spec: ScenarioSpec,
+    loaded: Loaded,
+    library: Library,
+    findings: Findings,
+    seed: int | None = None,
+) -> CompiledScenario | None:
+    """The passes, in order; None where something can't be run, which the findings tell."""
+    world = _world(spec, loaded, library, findings)
+    robots = Robots()
+    for name, robot in spec.robots.items():
+        _add(name, robot, loaded, library, robots, findings)
+    step = _step(spec, robots.found, findings)
+    duration = positive(spec.duration, "s", "a duration", ("duration",), findings)
+    beginnings: dict[str, float] = {}
+    for one in robots.found:
+        beginnings |= beginnings_of(one, spec.robots[one.name], findings)
+    if world is not None:
+        check_starts(world, robots.found, findings)
+        check_sights(world, robots.found, findings)
+    requirements = _requirements(spec, world, robots, findings)
+    if world is None or not robots.is_whole or findings.has_errors:
+        return None
+    scenario = Scenario(
+        name=spec.name,
+        about=spec.about or "",
+        world=world,
+        robots=tuple(robots.found),
+        duration=duration,
+        step=float(step),
+        seed=spec.seed if seed is None else seed,
+        beginnings=beginnings,
+        requirements=requirements,
+        source=origin_of(loaded),
+    )
+    warnings = (*findings.diagnostics, *robots.warnings)
+    return CompiledScenario(scenario, warnings, (*findings.notes, *robots.notes))
+
+
+def _world(
+    spec: ScenarioSpec, loaded: Loaded, library: Library, findings: Findings
+) -> World | None:
+    found = library.spec(loaded, ("world",), spec.world, "world", findings)
+    if found is None or not isinstance(found.spec, WorldSpec):
+        return None
+    own = Findings(found)
+    world = lower_world(found.spec, found, own)
+    library.refuse(found, own.diagnostics)
+    return None if own.has_errors else world
+
+
+def _add(
+    name: str,
+    spec: RobotSpec,
+    loaded: Loaded,
+    library: Library,
+    robots: Robots,
+    findings: Findings,
+) -> None:
+    path: Path = ("robots", name)
+    pose = None if spec.at == "random" else pose_of(spec.at, (*path, "at"), findings)
+    at = (*path, "architecture")
+    found = library.spec(loaded, at, spec.architecture, "architecture", findings)
+    if found is None or not isinstance(found.spec, ArchitectureSpec):
+        robots.is_whole = False
+        return
+    file = found.source.name
+    if file not in robots.compiled:
+        own = Findings(found)
+        robots.compiled[file] = compile_parts(found.spec, found, library, own)
+        library.refuse(found, own.diagnostics)
+        robots.warnings += tuple(d for d in own.diagnostics if d.severity is Severity.WARNING)
+        robots.notes += own.notes
+    compiled = robots.compiled[file]
+    if compiled is None:
+        robots.is_whole = False
+        return
+    robot = Robot(name, compiled.body, compiled.architecture, Start(pose), loaded.origin(path))
+    robots.found.append(robot)
+
+
+def _step(spec: ScenarioSpec, robots: list[Robot], findings: Findings) -> Fraction:
+    """The longest step up to the wanted one that divides all times of all robots."""
+    longest = exact(positive(spec.step, "s", "a step", ("step",), findings))
+    if longest < LEAST_STEP:
+        message = f"a step of {seconds(float(longest))} is shorter than 0.1 ms"
+        findings.error("S352", ("step",), message, "write 'step: 1 ms' or more")
+        return LEAST_STEP
+    shared = Fraction(0)
+    for robot in robots:
+        with_it = common((shared, *map(exact, times_of(robot))))
+        if 0 < with_it < LEAST_STEP:
+            message = f"no step of 0.1 ms or more divides the times of {robot.name} and the others"
+            remedy = "write times that are multiples of one another, or of 1 ms"
+            findings.error("S352", ("robots", robot.name), message, remedy, key=True)
+            return LEAST_STEP
+        shared = with_it
+    step = shared / math.ceil(shared / longest) if shared else longest
+    if step < LEAST_STEP:
+        # Every divisor of what they share that is no longer than wanted is too short.
+        message = f"a step up to {seconds(float(longest))} that divides all times is below 0.1 ms"
+        findings.error("S352", ("step",), message, f"write 'step: {seconds(float(shared))}'")
+    return max(step, LEAST_STEP)
+
+
+def times_of(robot: Robot) -> list[float]:
+    """Every time above 0 that a step must divide."""
+    times = [time for s in robot.body.sensors for time in (s.every, s.latency)]
+    times += [time for n in robot.architecture.nodes for time in (n.period, n.response_time)]
+    return [time for time in times if time > 0.0]
+
+
+def _requirements(
+    spec: ScenarioSpec, world: World | None, robots: Robots, findings: Findings
+) -> tuple[Requirement, ...]:
+    if world is None or not robots.is_whole:
+        return ()  # what a run has is not known
+    known = quantities_of(world, robots.found)
+    found = [
+        lower_requirement(text, ("require", i), known, findings)
+        for i, text in enumerate(spec.require)
+    ]
+    return tuple(one for one in found if one is not None)
