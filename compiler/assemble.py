@@ -13,6 +13,7 @@ from compiler.lower_parts import (
     lower_states,
     origin_of,
 )
+from compiler.noise import lower_noise
 from runtime.program import Field, Program
 from spec_schema.field_forms import Formula, Step
 from spec_schema.field_modes import Modes
@@ -54,4 +55,5 @@ def _program(checked: Checked, field: Field) -> Program:
         feasibility=lower_feasibility(spec),
         source=origin_of(checked.loaded),
         claims=checked.claims,
+        noise=lower_noise(expressions.noise, checked.loaded),
     )

@@ -31,6 +31,8 @@ def _lines(program: Program) -> Iterator[str]:
     for output in program.outputs:
         yield _line("output", output.name, f"= {output.code.text}", output.origin)
     yield from _field(program.field)
+    for noise in program.noise:
+        yield _line("noise", noise.state, f"= {noise.size.text}", noise.origin)
     yield from _verification(program)
 
 

@@ -1,11 +1,12 @@
 """Pass 2: every expression parsed, its names found, its dimension checked against its place."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import final
 
 from compiler.declare import Declarations
 from compiler.findings import Findings
+from compiler.noise import read_noise
 from compiler.quantities import unit_of
 from compiler.read_modes import Way, read_modes
 from compiler.read_rates import read_rates
@@ -27,7 +28,7 @@ class Expressions:
     """The trees of a behavior.
 
     rates: of the driven states (for a step map, their next values). ways: between its modes.
-    drawing: a sketched field.
+    drawing: a sketched field. noise: sizes of the noise of driven states.
     """
 
     rates: Mapping[str, Expr]
@@ -36,6 +37,7 @@ class Expressions:
     judge_when: Expr | None
     ways: tuple[Way, ...] = ()
     drawing: Drawing | None = None
+    noise: Mapping[str, Expr] = field(default_factory=dict)
 
 
 def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findings) -> Expressions:
@@ -51,7 +53,8 @@ def read_expressions(spec: BehaviorSpec, declared: Declarations, findings: Findi
     drawing = None
     if isinstance(spec.field.form, Sketch):
         drawing = read_sketch(spec.field.form, declared, scope, findings)
-    return Expressions(rates, closures, outputs, judge_when, ways, drawing)
+    noise = read_noise(spec, declared, scope, findings)
+    return Expressions(rates, closures, outputs, judge_when, ways, drawing, noise)
 
 
 def signals(spec: BehaviorSpec | ArbiterSpec) -> tuple[str, ...]:

@@ -228,7 +228,11 @@ def _warn_of_unused(
 ) -> None:
     if findings.has_errors:
         return  # what could not be read may well be what uses them
-    trees = [*expressions.closures.values(), *expressions.outputs.values()]
+    trees = [
+        *expressions.closures.values(),
+        *expressions.outputs.values(),
+        *expressions.noise.values(),
+    ]
     if expressions.judge_when is not None:
         trees.append(expressions.judge_when)
     used = read.union(*map(names_in, trees))

@@ -14,6 +14,7 @@ from runtime.integrators import Trajectories, adaptive, fixed_steps
 from runtime.kernels.switching import MOST_SWITCHES
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
+from runtime.restless import restless
 from runtime.rollout import Ending, Rollout, Switches
 
 SAMPLES: Final = 1000
@@ -54,12 +55,14 @@ def simulate(
     *,
     method: Integrator = Adaptive(),  # frozen
     source: Source = Source.TABLES,
+    seed: int = 0,
 ) -> Rollout:
     """Let a behavior run for `duration` seconds, with a sample `every` so many seconds.
 
     start, controls: numbers or arrays that broadcast to one batch of trajectories. States that
     `start` does not name begin at their `hold`; controls have their defaults. A step map steps on
-    its own clock, whatever `method` says. The last sample is at `duration`.
+    its own clock, whatever `method` says. The last sample is at `duration`. seed: of all chance,
+    where the program has noise.
 
     Raises:
         ValueError: a name is unknown, a value is outside its domain, or a time makes no sense.
@@ -75,7 +78,7 @@ def simulate(
         raise ValueError(
             f"{x0.shape[0]} runs with {times.size} samples each are too many; sample less often"
         )
-    ran = _run(flow, x0, u, times, method)
+    ran = _run_with_noise(flow, x0, u, times, method, seed)
     register = _with_constants(flow, ran.states, u)
     outputs = evaluate([output.code for output in program.outputs], program.register, register)
     # Code that reads no state has a value even after the end; a rollout has none there.
@@ -92,6 +95,18 @@ def simulate(
         ended_in=frozen(ran.ended_in.reshape(*shape, -1)),
         switches=ran.switches,
     )
+
+
+def _run_with_noise(
+    flow: Flow, x0: Array, u: Array, times: Array, method: Integrator, seed: int
+) -> Trajectories:
+    if not flow.program.noise:
+        return _run(flow, x0, u, times, method)
+
+    def move(x: Array, held: Array, span: Array) -> Trajectories:
+        return _run(flow, x, held, span, method)
+
+    return restless(flow, x0, u, times, seed, move)
 
 
 def _run(flow: Flow, x0: Array, u: Array, times: Array, method: Integrator) -> Trajectories:

@@ -176,6 +176,13 @@ class BehaviorSpec(StrictModel):
         "form.",
         examples=[{"formula": {"x": "-k*x"}}],
     )
+    noise: Mapping[Name, Quantity] = Field(
+        default={},
+        description="How restless it is: for each driven state how far chance moves it in one "
+        "second (standard deviation), growing with the square root of time; for a step map, in one "
+        "step. A number, a quantity, or an expression in the state's unit.",
+        examples=[{"heading": "20 deg"}],
+    )
     table: TableSpec = Field(
         default_factory=TableSpec,
         description="How the field is tabulated.",

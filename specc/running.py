@@ -17,10 +17,13 @@ def simulate(
     duration: Value = "20 s",
     controls: Mapping[str, Value] | None = None,
     every: Value | None = None,
+    *,
+    seed: int = 0,
 ) -> Rollout:
     """Run a behavior alone; sensed-only variables follow their closure or are held.
 
-    Values are numbers in the variable's own unit, or quantities (`"40 cm/s"`).
+    Values are numbers in the variable's own unit, or quantities (`"40 cm/s"`). seed: of all chance,
+    where the behavior has `noise`.
 
     Raises:
         SpecError: a name that it does not have, or a value outside its domain.
@@ -34,7 +37,7 @@ def simulate(
     )
     step = None if every is None else seconds(every, "every")
     try:
-        return run(program, begin, seconds(duration), held, step)
+        return run(program, begin, seconds(duration), held, step, seed=seed)
     except ValueError as error:
         see = "see `specc simulate --help`"
         raise fault("V342", program.source.file, str(error), see) from error

@@ -24,6 +24,9 @@ def simulate(
     every: Annotated[
         str | None, typer.Option("--every", help="Time between two samples; default duration/1000.")
     ] = None,
+    seed: Annotated[
+        int, typer.Option("--seed", min=0, help="What chance follows from, where there is `noise`.")
+    ] = 0,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Record to this .mcap or .csv file.")
     ] = None,
@@ -49,7 +52,7 @@ def simulate(
     warmed(spec)
     program = loading.load_program(spec)
     begin, held = assignments(start), assignments(settings)
-    rollout = running.simulate(program, begin, duration, held, every)
+    rollout = running.simulate(program, begin, duration, held, every, seed=seed)
     if output is not None:
         from specc.recorded import record
 
