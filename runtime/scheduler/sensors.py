@@ -3,7 +3,7 @@
 import math
 import sys
 from collections.abc import Sequence
-from typing import Protocol, final
+from typing import Final, Protocol, final
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from runtime.program import Kind
 from runtime.scheduler.clock import Clock, whole_steps
 from runtime.scheduler.environment import Delivery
 from runtime.world.model import Body, Sensor, SensorKind
+
+NEVER: Final = sys.maxsize
+"""The instant that does not come."""
 
 
 class Sampled(Protocol):
@@ -41,13 +44,12 @@ class SensorBank:
             for index, sensor in enumerate(body.sensors)
         )
         self._clock = Clock([line.period for line in self._lines])
+        self._next = 0
 
     @property
     def next_due(self) -> int:
         """The next instant at which a sensor samples, or says what it sampled before."""
-        instants = [line.waiting[0][0] for line in self._lines if line.waiting]
-        sampling = self._clock.next_due
-        return min(instants, default=sys.maxsize) if sampling is None else min(sampling, *instants)
+        return self._next
 
     def due(self, instant: int) -> list[Delivery]:
         """Sample what is due, and give back what is to be said now; see the protocol."""
@@ -59,6 +61,9 @@ class SensorBank:
         for line in self._lines:
             while line.waiting and line.waiting[0][0] <= instant:
                 deliveries.append(Delivery(line.robot, line.sensor, line.waiting.pop(0)[1]))
+        sampling = self._clock.next_due
+        instants = [line.waiting[0][0] for line in self._lines if line.waiting]
+        self._next = min([NEVER if sampling is None else sampling, *instants])
         return deliveries
 
     def state(self) -> Array:

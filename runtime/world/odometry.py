@@ -26,8 +26,12 @@ class Odometry:
         self._motion = (0.0, 0.0, 0.0)
 
     def advance(self, driven: tuple[float, float, float], seconds: float) -> None:
-        """Add a step in which the wheels turned as for `driven`: forward, left, turn."""
-        forward, left, turn = self._motion = self._believed(driven)
+        """Add a step at the end of which the wheels turn as for `driven`: forward, left, turn.
+
+        In a step of the physics bodies move first, as fast as they were, and then change their
+        velocities; so do the wheels.
+        """
+        forward, left, turn = self._motion
         x, y, heading = self._place
         half = 0.5 * turn * seconds
         # The chord of an arc, seen in its middle: exact for a steady motion.
@@ -38,6 +42,7 @@ class Odometry:
             y + forward * sine + left * cosine,
             math.remainder(heading + 2.0 * half, math.tau),
         )
+        self._motion = self._believed(driven)
 
     def read(self) -> tuple[float, ...]:
         """The readings x, y, heading, speed, turn."""

@@ -51,28 +51,31 @@ def cast(
     something and `reach` where nothing is nearer, and the owners (n,), -1 for nothing.
     """
     total = len(parts.rows)
-    circles = np.empty((total, 3))
+    xs, ys, radii = np.empty(total), np.empty(total), np.empty(total)
     there = np.empty(total, dtype=np.int64)
     count = 0
     for row in range(total):
         if parts.rows[row, 2] != skip and is_at(height, parts, row):
-            circles[count, 0], circles[count, 1], circles[count, 2] = surround(parts, row)
+            xs[count], ys[count], radii[count] = surround(parts, row)
             there[count] = row
             count += 1
-    distances = np.full(len(rays), reach)
-    owners = np.full(len(rays), -1)
+    distances, owners = np.full(len(rays), reach), np.full(len(rays), -1)
+    room = np.empty(count)
     for ray in range(len(rays)):
         ox, oy, dx, dy = rays[ray, 0], rays[ray, 1], rays[ray, 2], rays[ray, 3]
+        # Without branches, so that several circles are looked at with one instruction.
+        for k in range(count):
+            rx, ry = xs[k] - ox, ys[k] - oy
+            room[k] = radii[k] - abs(rx * dy - ry * dx)
         nearest, hit = reach, -1
         for k in range(count):
-            rx, ry, radius = circles[k, 0] - ox, circles[k, 1] - oy, circles[k, 2]
-            along = rx * dx + ry * dy
-            if abs(rx * dy - ry * dx) > radius or along < -radius or along - radius > nearest:
+            if room[k] < 0.0:
+                continue
+            along = (xs[k] - ox) * dx + (ys[k] - oy) * dy
+            if along < -radii[k] or along - radii[k] > nearest:
                 continue
             enters, leaves = span(ox, oy, dx, dy, parts, there[k])
             if enters <= leaves and leaves >= 0.0 and enters < nearest:
-                if enters < 0.0 and parts.rows[there[k], 1] == 1:
-                    continue
                 nearest, hit = max(enters, 0.0), parts.rows[there[k], 2]
         distances[ray], owners[ray] = nearest, hit
     return distances, owners

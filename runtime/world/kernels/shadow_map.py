@@ -1,179 +1,250 @@
 """The light on all cells of a floor, compiled; only where something changed, if nothing else.
 
-Directions around a source are sorted into bins of equal diamond angle. A bin lists the parts that
-may shade in its directions, in the order of their owners, each with the squares of the distances
-between which its shadow may lie. Lists may hold too much, never too little; what shades is decided
-by the same test for all cells, so that a cell's number does not depend on when it was worked out.
+The shadow that a convex part throws on the floor is convex: of all that lies between heights
+`low` and `high`, the light from height h meets on its way to the floor what is between the shares
+1 - high / h and 1 - low / h of the way. So the shadow ends behind the part's near edges, stretched
+by 1 over the second share, before its far edges, stretched by 1 over the first, and between the
+two lines from the source that touch it. Each is a half-plane a dx + b dy + c >= 0 around the
+source, and on a row of cells a shadow is one interval of columns.
+
+Where a shadow is does not depend on when, or with what else, it is worked out, and shadows are
+multiplied in the order of their owners: so a part of the map has the numbers of the whole.
 """
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
 from runtime.kernels.cache import inlined, part
 from runtime.world.kernels.cache import kernel
-from runtime.world.kernels.parts import Parts, stands_between
+from runtime.world.kernels.parts import NOWHERE, Parts
 from runtime.world.kernels.shade import arrives
 
-BINS = 720
-NEAR = 1e-9
-"""Bounds of shadows are so much wider, relative to distances, that rounding loses nothing."""
+Grid: TypeAlias = tuple[float, float, int]
+"""The dx of the first column, the distance of columns, and how many there are."""
+Columns: TypeAlias = tuple[int, int]
+"""From one column to before another."""
+DISC_ROWS = 6
+"""Of a circle: two lines that touch it, two chords, and two circles x, y, radius (-1: none)."""
 
 
 @inlined
-def bin_of(dx: float, dy: float) -> int:
-    """The bin of a direction; counter-clockwise from x."""
-    size = abs(dx) + abs(dy)
-    if size == 0.0:
-        return 0
-    diamond = 1.0 - dx / size if dy >= 0.0 else 3.0 + dx / size
-    return min(int(diamond * (BINS / 4)), BINS - 1)
-
-
-@inlined
-def bins_between(rx: float, ry: float, lx: float, ly: float) -> tuple[int, int]:
-    """First bin and number of bins from a right to a left direction, one more at either end."""
-    first = bin_of(rx, ry) - 1
-    return first % BINS, (bin_of(lx, ly) + 1 - first) % BINS + 1
-
-
-@part
-def disc_reach(x: float, y: float, discs: Array, row: int) -> tuple[int, int, float, float]:
-    """Bins, least and largest distance of a circle, seen from (x, y)."""
-    cx, cy, radius = discs[row, 0] - x, discs[row, 1] - y, discs[row, 2]
-    square = cx * cx + cy * cy
-    distance = math.sqrt(square)
-    if distance <= radius * (1.0 + NEAR) + NEAR:
-        return 0, BINS, 0.0, distance + radius
-    sine = radius / distance
-    cosine = math.sqrt(1.0 - sine * sine)
-    first, count = bins_between(
-        cx * cosine + cy * sine,
-        cy * cosine - cx * sine,
-        cx * cosine - cy * sine,
-        cy * cosine + cx * sine,
-    )
-    return first, count, distance - radius, distance + radius
-
-
-@part
-def edges_reach(
-    x: float, y: float, segments: Array, first: int, count: int
-) -> tuple[int, int, float, float]:
-    """Bins, least and largest distance of an edge or a polygon, seen from (x, y)."""
-    rx, ry = segments[first, 0] - x, segments[first, 1] - y
-    lx, ly = rx, ry
-    least, largest = math.inf, 0.0
-    around = True
-    for row in range(first, first + count):
-        ax, ay = segments[row, 0] - x, segments[row, 1] - y
-        bx, by = segments[row, 2] - x, segments[row, 3] - y
-        if rx * by - ry * bx < 0.0:
-            rx, ry = bx, by
-        if lx * by - ly * bx > 0.0:
-            lx, ly = bx, by
-        ex, ey = bx - ax, by - ay
-        length = ex * ex + ey * ey
-        t = min(max(-(ax * ex + ay * ey) / length, 0.0), 1.0)
-        px, py = ax + t * ex, ay + t * ey
-        least = min(least, px * px + py * py)
-        largest = max(largest, ax * ax + ay * ay, bx * bx + by * by)
-        if ax * by - ay * bx < -NEAR * length:
-            around = False
-    least, largest = math.sqrt(least), math.sqrt(largest)
-    if around and count > 1:
-        return 0, BINS, 0.0, largest
-    if least <= NEAR * largest:
-        return 0, BINS, 0.0, largest
-    start, number = bins_between(rx, ry, lx, ly)
-    return start, number, least, largest
-
-
-@part
-def shadow_of(light: Array, parts: Parts, row: int) -> tuple[int, int, float, float]:
-    """Bins of a part's shadow on the floor, and squares of the distances it lies between.
-
-    No bins where it throws none: as high above the floor as the light, or higher.
-    """
+def shares_of_way(light: Array, parts: Parts, row: int) -> tuple[float, float]:
+    """From which to which share of its way to the floor the light is as high as a part."""
     height = light[2]
-    low, high = max(parts.low[row], 0.0), parts.high[row]
-    if low >= height:
-        return 0, 0, math.inf, -math.inf
+    first = 1.0 - parts.high[row] / height if parts.high[row] < height else 0.0
+    last = 1.0 - parts.low[row] / height if parts.low[row] > 0.0 else 1.0
+    return first, last
+
+
+@part
+def polygon_shadow(
+    light: Array, parts: Parts, row: int, near: float, far: float, planes: Array
+) -> int:
+    """Write the half-planes of the shadow of a polygon or an edge; returns how many they are.
+
+    near, far: the shares of the way at its far end and at its near end.
+    """
     first, count = parts.rows[row, 0], parts.rows[row, 1]
-    if count == 0:
-        start, number, least, largest = disc_reach(light[0], light[1], parts.discs, first)
-    else:
-        start, number, least, largest = edges_reach(
-            light[0], light[1], parts.segments, first, count
-        )
-    near = least * height / (height - low) * (1.0 - NEAR)
-    far = math.inf
-    if high < height:
-        far = largest * height / (height - high) * (1.0 + NEAR)
-    return start, number, near * near, far * far
-
-
-@part
-def mark(light: Array, parts: Parts, changed: Booleans, near: Array, far: Array) -> None:
-    """Widen, in each bin, the distances in which shadows of changed parts may lie."""
-    for row in range(len(parts.rows)):
-        if changed[row] and parts.rows[row, 2] != int(light[7]):
-            start, number, least, largest = shadow_of(light, parts, row)
-            for k in range(start, start + number):
-                near[k % BINS] = min(near[k % BINS], least)
-                far[k % BINS] = max(far[k % BINS], largest)
-
-
-@part
-def sort_into_bins(light: Array, parts: Parts) -> tuple[Integers, Integers, Array]:
-    """Where the list of each bin begins (BINS + 1,), all lists, and each part's bounds (p, 2)."""
-    total = len(parts.rows)
-    reach = np.empty((total, 2), dtype=np.int64)
-    bounds = np.empty((total, 2))
-    begin = np.zeros(BINS + 1, dtype=np.int64)
-    for row in range(total):
-        start, number, bounds[row, 0], bounds[row, 1] = shadow_of(light, parts, row)
-        if parts.rows[row, 2] == int(light[7]):
-            number = 0
-        reach[row, 0], reach[row, 1] = start, number
-        for k in range(start, start + number):
-            begin[k % BINS + 1] += 1
-    for k in range(BINS):
-        begin[k + 1] += begin[k]
-    lists = np.empty(begin[BINS], dtype=np.int64)
-    filled = begin[:BINS].copy()
-    for row in range(total):
-        for k in range(reach[row, 0], reach[row, 0] + reach[row, 1]):
-            lists[filled[k % BINS]] = row
-            filled[k % BINS] += 1
-    return begin, lists, bounds
+    segments = parts.segments
+    used, begins, ends = 0, -1, -1
+    before = count > 1 and is_front(light, segments, first + count - 1)
+    for edge in range(first, first + count):
+        ax, ay = segments[edge, 0] - light[0], segments[edge, 1] - light[1]
+        ex, ey = segments[edge, 2] - segments[edge, 0], segments[edge, 3] - segments[edge, 1]
+        left = ey * ax - ex * ay
+        if count == 1 and left > 0.0:
+            return wall_shadow(-left, ax + ex, ay + ey, -ex, -ey, planes)
+        if count == 1:
+            return wall_shadow(left, ax, ay, ex, ey, planes)
+        share = far if left < 0.0 else near
+        planes[used, 0], planes[used, 1], planes[used, 2] = -share * ey, share * ex, left
+        used += 1
+        if left < 0.0 and not before:
+            begins = edge
+        if before and not left < 0.0:
+            ends = edge
+        before = left < 0.0
+    if begins >= 0 and ends < 0:
+        ends = first
+    if begins >= 0:
+        lx, ly = segments[begins, 0] - light[0], segments[begins, 1] - light[1]
+        rx, ry = segments[ends, 0] - light[0], segments[ends, 1] - light[1]
+        planes[used, 0], planes[used, 1], planes[used, 2] = -ry, rx, 0.0
+        planes[used + 1, 0], planes[used + 1, 1], planes[used + 1, 2] = ly, -lx, 0.0
+        used += 2
+    return used
 
 
 @inlined
-def passes(
+def is_front(light: Array, segments: Array, edge: int) -> bool:
+    """Whether a source is on the outer side of an edge."""
+    ax, ay = segments[edge, 0] - light[0], segments[edge, 1] - light[1]
+    ex, ey = segments[edge, 2] - segments[edge, 0], segments[edge, 3] - segments[edge, 1]
+    return bool(ey * ax - ex * ay < 0.0)
+
+
+@inlined
+def wall_shadow(left: float, ax: float, ay: float, ex: float, ey: float, planes: Array) -> int:
+    """Write the half-planes of what is behind an edge from a to a + e, a to the left."""
+    planes[0, 0], planes[0, 1], planes[0, 2] = -ey, ex, left
+    planes[1, 0], planes[1, 1], planes[1, 2] = -(ay + ey), ax + ex, 0.0
+    planes[2, 0], planes[2, 1], planes[2, 2] = ay, -ax, 0.0
+    if left == 0.0:
+        planes[0, 2] = -math.inf
+    return 3
+
+
+@part
+def disc_shadow(
+    light: Array, discs: Array, row: int, near: float, far: float, planes: Array
+) -> int:
+    """Write the shadow of a circle: what is between two chords, and the circles at its ends."""
+    cx, cy, radius = discs[row, 0] - light[0], discs[row, 1] - light[1], discs[row, 2]
+    square = cx * cx + cy * cy - radius * radius
+    planes[:DISC_ROWS] = 0.0
+    planes[4, 2] = planes[5, 2] = -1.0
+    if near > 0.0:
+        planes[5, 0], planes[5, 1], planes[5, 2] = cx / near, cy / near, radius / near
+    if square <= 0.0:
+        # Below the source: the larger circle holds the smaller; without end if it has none.
+        planes[0, 2] = -1.0 if near > 0.0 else 0.0
+        return DISC_ROWS
+    planes[4, 0], planes[4, 1], planes[4, 2] = cx / far, cy / far, radius / far
+    # The lines that touch it are directed along c turned by the angle with sine radius / |c|.
+    length = math.sqrt(square)
+    rx, ry = cx * length + cy * radius, cy * length - cx * radius
+    lx, ly = cx * length - cy * radius, cy * length + cx * radius
+    planes[0, 0], planes[0, 1] = -ry, rx
+    planes[1, 0], planes[1, 1] = ly, -lx
+    planes[2, 0], planes[2, 1], planes[2, 2] = far * cx, far * cy, -square
+    planes[3, 0], planes[3, 1], planes[3, 2] = -near * cx, -near * cy, square
+    return DISC_ROWS
+
+
+@part
+def shadow_of(light: Array, parts: Parts, row: int, planes: Array) -> int:
+    """Write a part's shadow on the floor into `planes`; how many rows, 0 where it has none.
+
+    It has none where it carries the source, or is nowhere below it.
+    """
+    if light[2] <= 0.0:
+        return 0
+    near, far = shares_of_way(light, parts, row)
+    if parts.rows[row, 2] == int(light[7]) or far <= near:
+        return 0
+    if parts.rows[row, 1] == 0:
+        return disc_shadow(light, parts.discs, parts.rows[row, 0], near, far, planes)
+    return polygon_shadow(light, parts, row, near, far, planes)
+
+
+@inlined
+def between(planes: Array, first: int, last: int, dy: float) -> tuple[float, float]:
+    """From which to which dx all half-planes hold."""
+    low, high = -math.inf, math.inf
+    for k in range(first, last):
+        value = planes[k, 1] * dy + planes[k, 2]
+        if planes[k, 0] > 0.0:
+            low = max(low, -value / planes[k, 0])
+        elif planes[k, 0] < 0.0:
+            high = min(high, -value / planes[k, 0])
+        elif value < 0.0:
+            return NOWHERE
+        if low > high:
+            return NOWHERE
+    return low, high
+
+
+@inlined
+def shaded(planes: Array, first: int, count: int, edges: int, dy: float, grid: Grid) -> Columns:
+    """The columns of a row that lie in the shadow of a part with so many edges; 0: a circle."""
+    if count == 0:
+        return 0, 0
+    start, pitch, columns = grid
+    low, high = between(planes, first, first + (count if edges else 4), dy)
+    if edges == 0:
+        for k in range(first + 4, first + DISC_ROWS):
+            away, radius = dy - planes[k, 1], planes[k, 2]
+            square = radius * radius - away * away
+            if radius >= 0.0 and square >= 0.0:
+                root = math.sqrt(square)
+                low, high = min(low, planes[k, 0] - root), max(high, planes[k, 0] + root)
+    if low > high:
+        return 0, 0
+    begin = math.ceil(min(max((low - start) / pitch, 0.0), float(columns)))
+    end = math.floor(min(max((high - start) / pitch, -1.0), columns - 1.0)) + 1
+    return begin, end
+
+
+@part
+def widen(
     light: Array,
-    dx: float,
-    dy: float,
     parts: Parts,
-    begin: Integers,
-    lists: Integers,
-    bounds: Array,
-    k: int,
-) -> float:
-    """The share of light that reaches the floor at (dx, dy) from below the source, in bin k."""
-    share, before = 1.0, -1
-    square = dx * dx + dy * dy
-    for index in range(begin[k], begin[k + 1]):
-        row = lists[index]
-        if parts.rows[row, 2] == before or not bounds[row, 0] <= square <= bounds[row, 1]:
+    changed: Booleans,
+    ys: Array,
+    grid: Grid,
+    limits: Integers,
+    planes: Array,
+) -> None:
+    """Widen `limits` (2, ny), the columns of each row, by the shadows of changed parts."""
+    for row in range(len(changed)):
+        if changed[row]:
+            count = shadow_of(light, parts, row, planes)
+            for i in range(len(ys)):
+                dy = ys[i] - light[1]
+                first, last = shaded(planes, 0, count, parts.rows[row, 1], dy, grid)
+                if first < last:
+                    limits[0, i] = min(limits[0, i], first)
+                    limits[1, i] = max(limits[1, i], last)
+
+
+@part
+def shadows_of(light: Array, parts: Parts) -> tuple[Array, Integers]:
+    """The rows of all parts' shadows, and where those of each part begin and end (p + 1,)."""
+    total = len(parts.rows)
+    first = np.zeros(total + 1, dtype=np.int64)
+    planes = np.empty((parts.rows[:, 1].sum() + DISC_ROWS * total, 3))
+    for row in range(total):
+        count = shadow_of(light, parts, row, planes[first[row] :])
+        first[row + 1] = first[row] + count
+    return planes, first
+
+
+@part
+def shade_row(
+    share: Array,
+    covered: Booleans,
+    limits: Columns,
+    dy: float,
+    grid: Grid,
+    parts: Parts,
+    planes: Array,
+    first: Integers,
+) -> None:
+    """Fill columns of a row with the share of light that reaches the floor."""
+    begin, end = limits
+    share[begin:end] = 1.0
+    total = len(parts.rows)
+    for row in range(total):
+        owner, count = parts.rows[row, 2], first[row + 1] - first[row]
+        is_last = row + 1 == total or parts.rows[row + 1, 2] != owner
+        is_only = is_last and (row == 0 or parts.rows[row - 1, 2] != owner)
+        low, high = shaded(planes, first[row], count, parts.rows[row, 1], dy, grid)
+        low, high = max(low, begin), min(high, end)
+        if is_only:
+            for j in range(low, high):
+                share[j] *= parts.transmittance[row]
             continue
-        if stands_between((light[0], light[1], light[2]), (dx, dy, -light[2]), parts, row):
-            share *= parts.transmittance[row]
-            before = parts.rows[row, 2]
-            if share == 0.0:
-                break
-    return share
+        # Of several parts of one owner only the first in the way counts.
+        for j in range(low, high):
+            covered[j] = True
+        if is_last:
+            for j in range(begin, end):
+                if covered[j]:
+                    share[j] *= parts.transmittance[row]
+                    covered[j] = False
 
 
 @kernel
@@ -189,31 +260,32 @@ def shine(
 ) -> int:
     """Bring the light of each source on the floor up to date; by_source (l, ny, nx), lux.
 
-    anew: (l,) sources of which all is worked out. changed: (p,) parts that stood in `was` where
-    they no longer stand in `parts`: of the other sources only what lies in a shadow of theirs,
-    old or new, is worked out. Returns how many cells of how many sources were.
+    xs: at least 2, evenly spaced. anew: (l,) sources of which all is worked out. changed: (p,)
+    parts that stood in `was` where they no longer stand in `parts`: of the other sources only
+    what lies in a shadow of theirs, old or new, is worked out. Returns how many cells of how many
+    sources were.
     """
-    worked = 0
+    worked, columns = 0, len(xs)
+    limits = np.empty((2, len(ys)), dtype=np.int64)
+    share, covered = np.empty(columns), np.zeros(columns, dtype=np.bool_)
+    room = np.empty((parts.rows[:, 1].max() + DISC_ROWS, 3))
     for index in range(len(sources)):
         light = sources[index]
-        near = np.full(BINS, 0.0 if anew[index] else math.inf)
-        far = np.full(BINS, math.inf if anew[index] else -math.inf)
+        grid = (xs[0] - light[0], xs[1] - xs[0], columns)
+        limits[0], limits[1] = (0, columns) if anew[index] else (columns, 0)
         if not anew[index]:
-            mark(light, was, changed, near, far)
-            mark(light, parts, changed, near, far)
-            if near.min() == math.inf:
+            widen(light, was, changed, ys, grid, limits, room)
+            widen(light, parts, changed, ys, grid, limits, room)
+            if limits[1].max() == 0:
                 continue
-        begin, lists, bounds = sort_into_bins(light, parts)
+        planes, first = shadows_of(light, parts)
         for i in range(len(ys)):
-            dy = ys[i] - light[1]
-            for j in range(len(xs)):
-                dx = xs[j] - light[0]
-                k = bin_of(dx, dy)
-                if not near[k] <= dx * dx + dy * dy <= far[k]:
-                    continue
-                lux = arrives(light, dx, dy, light[2])
-                if lux > 0.0:
-                    lux *= passes(light, dx, dy, parts, begin, lists, bounds, k)
-                by_source[index, i, j] = lux
-                worked += 1
+            begin, end, dy = limits[0, i], limits[1, i], ys[i] - light[1]
+            if begin >= end:
+                continue
+            shade_row(share, covered, (begin, end), dy, grid, parts, planes, first)
+            for j in range(begin, end):
+                lux = arrives(light, xs[j] - light[0], dy, light[2])
+                by_source[index, i, j] = lux * share[j]
+            worked += end - begin
     return worked
