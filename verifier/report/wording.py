@@ -39,6 +39,15 @@ def quantity(value: float, unit: Unit) -> str:
     return f"{shown(value, unit)}{suffix(unit)}"
 
 
+def exact(value: float, unit: Unit) -> str:
+    """A value with its unit, in as many digits as a person would copy.
+
+    >>> exact(0.4945, Unit("m", 1.0))
+    '0.4945 m'
+    """
+    return f"{value / unit.scale:.6g}{suffix(unit)}"
+
+
 def span(low: float, high: float, unit: Unit) -> str:
     """Two values, in as many digits as tell them apart.
 

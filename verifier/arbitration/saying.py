@@ -1,0 +1,146 @@
+"""What the decisions of a robot show, in sentences."""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from verifier.report.arbitration import Arbitration, Region, Share, Threshold, ThresholdStanding
+from verifier.report.report import Standing, Verdict
+from verifier.report.wording import exact, listed, number, percent, quantity, seconds, span
+
+FEWEST_SHOWN: Final = 0.05
+"""Of the decisions that differ: a confusion rarer than this is not told first."""
+
+
+def reasons_of(section: Arbitration, verdict: Verdict) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Why the verdict is as it is, and what to do next."""
+    share = section.share
+    if not share.decisions:
+        return ("no decision in the log can be judged",), ("see what was not judged, and why",)
+    told = f"it decides as the spec in {_of(share)}; {percent(section.required)} is required"
+    match verdict:
+        case Verdict.PASS:
+            return (told,), ()
+        case Verdict.INCONCLUSIVE:
+            return (told,), ("record more changes of choice: decisions that go on tell little",)
+        case Verdict.FAIL:
+            return (told, *_mainly(section)), _advice(section)
+
+
+def sentences_of(section: Arbitration) -> tuple[str, ...]:
+    """What explains the decisions that differ, and what they leave open."""
+    if not section.share.decisions:
+        return ()
+    return (
+        *_mainly(section),
+        *_where(section),
+        *_delayed(section),
+        *_rest(section),
+        *_open(section),
+    )
+
+
+def threshold_sentence(each: Threshold) -> str:
+    """`near is 0.494 to 0.495 m (spec 0.55 m)`."""
+    own = exact(each.value, each.unit)
+    low, high = each.interval.low, each.interval.high
+    if math.isinf(low) and math.isinf(high):
+        return f"{each.name} may be anything (spec {own}): no reading is decided by it"
+    if math.isinf(low):
+        return f"{each.name} is at most {quantity(high, each.unit)} (spec {own})"
+    if math.isinf(high):
+        return f"{each.name} is at least {quantity(low, each.unit)} (spec {own})"
+    return f"{each.name} is {span(low, high, each.unit)} (spec {own})"
+
+
+def region_phrase(region: Region) -> str:
+    """Its conditions in one phrase."""
+    return listed(list(region.conditions))
+
+
+def _of(share: Share) -> str:
+    ends = f"{_percents(share.interval.low)} to {_percents(share.interval.high)}"
+    return f"{_percents(share.value)} of {share.decisions} decisions (95 % interval {ends})"
+
+
+def _percents(share: float) -> str:
+    """With as many digits as tell it from 1."""
+    missing = 1.0 - share
+    digits = 0 if missing <= 0.0 or missing >= 0.1 else min(int(-math.log10(missing)), 3)
+    return f"{100.0 * share:.{digits}f} %"
+
+
+def _mainly(section: Arbitration) -> tuple[str, ...]:
+    """The confusion that is most frequent, and thresholds that are elsewhere."""
+    moved = [t for t in section.thresholds if t.standing is ThresholdStanding.MOVED]
+    found = []
+    if moved:
+        changed = listed([threshold_sentence(each) for each in moved])
+        found.append(f"{changed}: {_then(section)}")
+    differ = section.confusion.copy()
+    np.fill_diagonal(differ, 0)
+    total = int(differ.sum())
+    if total:
+        robot, spec = np.unravel_index(int(np.argmax(differ)), differ.shape)
+        count = int(differ[robot, spec])
+        if count > FEWEST_SHOWN * total:
+            found.append(
+                f"where the spec chooses {section.choices[spec]}, the robot chooses"
+                f" {section.choices[robot]} {count} times, of {total} decisions that differ"
+            )
+    return tuple(found)
+
+
+def _then(section: Arbitration) -> str:
+    """How many agree with what explains the most."""
+    count = section.share.decisions
+    if section.unexplained == 0:
+        return f"with that, all {count} decisions agree"
+    return f"with that, all but {section.unexplained} of {count} decisions agree"
+
+
+def _where(section: Arbitration) -> tuple[str, ...]:
+    worst = [c for c in section.cells if c.standing is Standing.EXCEEDED][:1]
+    return tuple(
+        f"where {region_phrase(each)}, {_percents(each.share.value)} of"
+        f" {each.share.decisions} decisions agree"
+        for each in worst
+    )
+
+
+def _delayed(section: Arbitration) -> tuple[str, ...]:
+    if not section.delay:
+        return ()
+    when = "after" if section.delay > 0 else "before"
+    by = seconds(abs(section.delay) * section.period)
+    samples = f"{abs(section.delay)} sample{'s' if abs(section.delay) > 1 else ''}"
+    return (f"the robot decides {by} ({samples}) {when} the readings tell it to: {_then(section)}",)
+
+
+def _rest(section: Arbitration) -> tuple[str, ...]:
+    if not section.unexplained:
+        return ()
+    at = section.strays[0]
+    first = f"{at.decisions} from {number(at.start)} s on, {at.robot} where the spec has {at.spec}"
+    return (f"{section.unexplained} decisions stay unexplained, most in one stretch: {first}",)
+
+
+def _open(section: Arbitration) -> tuple[str, ...]:
+    untold = [t for t in section.thresholds if t.standing is ThresholdStanding.UNTOLD]
+    return tuple(
+        f"{each.comparison} is not told: too few readings lie near it; {threshold_sentence(each)}"
+        for each in untold
+    )
+
+
+def _advice(section: Arbitration) -> tuple[str, ...]:
+    found = [
+        f"if the robot is right, write {each.name}: {exact(each.fitted, each.unit)} ({each.origin})"
+        for each in section.thresholds
+        if each.standing is ThresholdStanding.MOVED
+    ]
+    if section.delay > 0:
+        late = seconds(section.delay * section.period)
+        found.append(f"if it may decide {late} late, say so: `delay` of the choice under `trace:`")
+    return tuple(found)
