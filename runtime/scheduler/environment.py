@@ -82,3 +82,7 @@ class Sensors(Protocol):
         In the order of robots, then sensors, then samples. Afterwards `next_due` > `instant`.
         """
         ...
+
+    def state(self) -> Array:
+        """What they have sampled and not said yet, and what they said last: for digests."""
+        ...

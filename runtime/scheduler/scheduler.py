@@ -100,6 +100,7 @@ class Scheduler:
         for instant, robot, node, said in sorted(self._pending, key=lambda entry: entry[:3]):
             digest.update(np.array([instant, robot, node, said.acts], dtype=np.int64).tobytes())
             digest.update(said.outputs.tobytes() + said.commands.tobytes())
+        digest.update(self._sensors.state().tobytes())
         digest.update(self._environment.state_hash())
         return digest.digest()
 
