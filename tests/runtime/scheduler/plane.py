@@ -110,6 +110,9 @@ class Plain:
         self.next_due = instant + 1
         return now
 
+    def state(self) -> Array:
+        return np.concatenate([np.zeros(0), *(readings for *_, readings in self.late)])
+
 
 @dataclass
 class N:
