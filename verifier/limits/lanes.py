@@ -27,7 +27,12 @@ LONGEST: Final = 64
 EASY: Final = 8
 """done in so many rounds,"""
 ROUNDS: Final = 66
-"""and never in more; where a field jumps, rounds may go on without end."""
+"""and never in more: rounds of steps that are long beside the field's own time, go on without end.
+From there on, each step is solved by itself."""
+NEWTON: Final = 8
+"""So many of Newton's steps, at most; where a field jumps, they may go to and fro."""
+NUDGE: Final = 1e-6
+"""Of the domain, for the slopes that Newton's method takes."""
 SETTLED: Final = 1e-7
 """The last round changes deviations by no more than this share of the largest; those of a step map
 not at all, which takes no more rounds than there are steps."""
@@ -78,14 +83,23 @@ def integrated(study: Study, knots: Knots, lanes: tuple[Lane, ...]) -> tuple[Arr
     real = _real_motion(robots, knots)
     switches = switch_knots(robots.flow, knots.grid)
     ends = np.union1d(np.append(np.flatnonzero(knots.begins), len(knots.times)), switches)
-    k, most = 0, SHORTEST
+    k, most, is_stiff = 0, SHORTEST, False
     while k < len(knots.times) - 1:
         if knots.begins[k + 1]:
             k += 1
             continue
         end = int(ends[np.searchsorted(ends, k, side="right")])
         last = min(k + most, end if end in switches else end - 1)
-        path[k : last + 1], rounds = _block(robots, knots, real, path[k], slice(k, last))
+        rounds = ROUNDS
+        if is_stiff:
+            last = k + 1
+            path[last] = _step(robots, knots, real, path[k], k)
+        else:
+            part = slice(k, last)
+            path[k : last + 1], rounds, is_settled = _block(robots, knots, real, path[k], part)
+            if not is_settled:
+                is_stiff, most = most == SHORTEST, max(most // 2, SHORTEST)
+                continue
         if last in switches:
             path[last] = _jumped(robots, knots, path[last], last)
         lost = _is_lost(study, knots.states[k + 1 : last + 1], path[k + 1 : last + 1])
@@ -102,8 +116,8 @@ def integrated(study: Study, knots: Knots, lanes: tuple[Lane, ...]) -> tuple[Arr
 
 def _block(
     robots: _Robots, knots: Knots, real: Array, start: Array, part: slice
-) -> tuple[Array, int]:
-    """The deviations (S + 1, L, D) over S steps, from `start` (L, D), and in how many rounds.
+) -> tuple[Array, int, bool]:
+    """The deviations (S + 1, L, D) over S steps, from `start` (L, D); how many rounds; settled?
 
     The implicit midpoint rule (of a step map, its steps), for all steps at once: each round puts
     in what the one before it gave (waveform relaxation; it ends, as Picard's iteration does).
@@ -121,7 +135,36 @@ def _block(
         found = np.concatenate([start[None], start + np.cumsum(steps * (moved - plain), axis=0)])
         change = np.max(np.abs(found - path), initial=0.0)
         path, is_settled = found, not change > settled * np.max(np.abs(found), initial=0.0)
-    return path, rounds
+    return path, rounds, is_settled
+
+
+def _step(robots: _Robots, knots: Knots, real: Array, start: Array, k: int) -> Array:
+    """The deviations (L, D) one step on, by the implicit midpoint rule, solved by Newton's method.
+
+    The slopes are those where the step begins.
+    """
+    part = slice(k, k + 1)
+    length = knots.times[k + 1] - knots.times[k]
+    states = robots.flow.program.states
+    nudges = NUDGE * np.array([states[i].high - states[i].low for i in robots.driven])
+
+    def rates_at(deviation: Array) -> Array:
+        at = _displaced(robots, knots.middle[part], deviation[None])
+        found: Array = robots.moved(at, knots.controls[part], part)[0]
+        return found
+
+    before = rates_at(start)
+    moved = [rates_at(start + nudge) - before for nudge in np.diag(nudges)]
+    slopes = np.stack(moved, axis=-1) / nudges
+    inverse = np.linalg.inv(np.eye(len(nudges)) - 0.5 * length * slopes)
+    after = start
+    for _ in range(NEWTON):
+        miss = after - start - length * (rates_at((start + after) / 2.0) - real[k])
+        change = np.einsum("lij,lj->li", inverse, miss)
+        after = after - change
+        if not np.max(np.abs(change), initial=0.0) > SETTLED * np.max(np.abs(after), initial=0.0):
+            break
+    return np.asarray(after)
 
 
 def _is_lost(study: Study, states: Array, deviation: Array) -> Booleans:

@@ -224,3 +224,27 @@ def test_what_a_guard_resets_has_no_deviation_afterwards(scenes: ModuleType) -> 
     assert np.sum(settled) > 200
     assert moved(trace, copy, "v")[settled] == pytest.approx(0.01 * since[settled], abs=1e-3)
     assert np.max(moved(trace, copy, "x")[settled]) > 0.3
+
+
+@pytest.mark.parametrize("pace", [50.0, 150.0, 600.0])
+def test_a_field_that_is_fast_beside_the_steps_leaves_what_the_fault_leaves_of_it(
+    scenes: ModuleType, pace: float
+) -> None:
+    """x' = pace (goal - x) + offset rests offset / pace away from its goal, however fast it is."""
+    program = scenes.program(
+        (scenes.state("x", -2.0, 2.0),),
+        (scenes.control("goal", -1.0, 1.0, 0.0),),
+        {"x": f"{pace} goal x sub mul"},
+        scenes.fidelity({"x": 0.02}, 2.0),
+    )
+    times, jumps = np.arange(0.0, 20.0, 0.01), np.arange(0.0, 20.0, 1.0)
+    goals = np.random.default_rng(3).uniform(-0.9, 0.9, len(jumps))
+    goal = goals[np.clip(np.searchsorted(jumps, times, side="right") - 1, 0, None)]
+    trace = scenes.trace(scenes.series("x", times, goal), scenes.series("goal", jumps, goals))
+
+    copy, study = planted(program, trace, Fault.OFFSET, "x", 0.23)
+
+    assert len(copy.series["x"].times) == len(times), "no gap was cut"
+    ((start, _),) = study.segments.spans
+    settled = times > start + 0.5
+    assert moved(trace, copy, "x")[settled] == pytest.approx(0.23 / pace, rel=0.02)
