@@ -20,6 +20,11 @@ from runtime.machine import evaluate
 from runtime.program import Field, Kind, Origin, Program, Role, State, Unit
 from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
+from runtime.world.geometry import Plan
+from runtime.world.kernels.cache import SOURCES as SENSES
+from runtime.world.light import LightMap, Sources, light_at
+from runtime.world.model import Light, Pose
+from runtime.world.rays import NOBODY, View, fan, first_hits, nearest_visible, parts_of
 
 TABLE = tabulate(np.zeros((2, 1)), (Axis("x", 0.0, 1.0, 2, periodic=False),), Method.LINEAR)
 
@@ -65,6 +70,20 @@ def _bounds() -> object:
     return column_jets(columns_of(TABLE), [box], 1, coarse=False)
 
 
+def _senses() -> object:
+    plan = Plan((), (), np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
+    plan.place(np.zeros((0, 3)), 1)
+    parts = parts_of(plan.geometry)
+    sources = Sources([Light("", "", Pose(0.3, 0.3, 0.0), 1.0, 1.0, 1.0, "")], plan.geometry)
+    eye, view = np.array((0.2, 0.2, 0.1)), View(1.0, 0.0, 0.0, 1.0)
+    return (
+        first_hits(parts, fan(0.2, 0.2, 0.0, 1.0, 2), reach=1.0, height=0.1, skip=NOBODY),
+        nearest_visible(parts, eye, view, sources.rows[:, :3].copy(), sources.owners, skip=NOBODY),
+        light_at(parts, sources.rows, eye),
+        LightMap(parts, sources, (0.0, 0.0, 1.0, 1.0), (2, 2), 0.0),
+    )
+
+
 KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("interpolation", block_address),
     ("table lookup", lambda: lookup(TABLE, [0.5])),
@@ -74,6 +93,7 @@ KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("expressions", lambda: evaluate([Code("x")], ("x",), START)),
     ("fixed steps", _step),
     ("adaptive steps", _adapt),
+    ("rays and light", _senses),
 )
 """Names, and small calls that compile; each kernel is compiled for one kind of arguments only."""
 
@@ -107,6 +127,6 @@ def _mark() -> Path | None:
     if folder is None:
         return None
     digest = hashlib.sha256()
-    for path in sorted(SOURCES.glob("*.py")):
+    for path in sorted([*SOURCES.glob("*.py"), *SENSES.glob("*.py")]):
         digest.update(f"{path} {path.stat().st_mtime_ns}\0".encode())
     return folder / f"warm-{digest.hexdigest()[:16]}"
