@@ -116,7 +116,7 @@ def tick(
     sizes = 1 + frame.outputs
     for j in range(frame.noisy.shape[0]):
         frame.room[5, frame.noisy[j]] = kicks[j] * frame.rest_work[frame.rest.results[sizes + j], 0]
-    flags |= _ahead(frame, x, new, int(commits))
+    flags |= _ahead(frame, x, new, int(commits), flags)
     flags |= _command(frame, register, new, told)
     if commits and flags & BROKEN == 0:
         for i in range(frame.own.shape[0]):
@@ -202,7 +202,7 @@ def _settle(frame: Frame, x: Array) -> int:
 
 
 @part
-def _ahead(frame: Frame, x: Array, new: Array, commits: int) -> int:
+def _ahead(frame: Frame, x: Array, new: Array, commits: int, settled: int) -> int:
     """The state one period on, without noise; the rates at the sample stay in row 2 of the room."""
     for i in range(x.shape[0]):
         new[i] = x[i]
@@ -214,17 +214,20 @@ def _ahead(frame: Frame, x: Array, new: Array, commits: int) -> int:
             new[i] = first[i]
             first[i] = (first[i] - x[i]) / frame.period
         return 0
-    flags = 0
     h = frame.period / PARTS
     here = frame.room[4]
+    guarded = commits == 1 and frame.mode >= 0 and settled & CHATTERS == 0
+    flags = 0
     for number in range(PARTS):
         for i in range(x.shape[0]):
             here[i] = new[i]
         _step(frame, here, h, new, int(number == 0))
-        if commits == 1 and frame.mode >= 0:
+        if guarded:
             _look(frame, new)
             if _open_guard(frame, new) >= 0:
                 flags |= _through_guards(frame, here, h, new)
+                # What switches without end goes on in the mode that it came to.
+                guarded = flags & CHATTERS == 0
     return flags
 
 
@@ -273,11 +276,12 @@ def _through_guards(frame: Frame, here: Array, h: float, new: Array) -> int:
         _look(frame, new)
         _jump(frame, new, _open_guard(frame, new))
         left -= high
-        if _settle(frame, new) & CHATTERS:
-            break
+        chatters = _settle(frame, new) & CHATTERS
         for i in range(new.shape[0]):
             here[i] = new[i]
         _step(frame, here, left, new, 0)
+        if chatters != 0:
+            return CHATTERS | SWITCHED
         _look(frame, new)
         if _open_guard(frame, new) < 0:
             return SWITCHED
