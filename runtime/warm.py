@@ -24,7 +24,7 @@ from runtime.world.geometry import Plan
 from runtime.world.kernels.cache import SOURCES as SENSES
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Light, Pose
-from runtime.world.rays import NOBODY, View, fan, first_hits, nearest_visible, parts_of
+from runtime.world.rays import NOBODY, View, first_hits, least_range, nearest_visible, parts_of
 
 TABLE = tabulate(np.zeros((2, 1)), (Axis("x", 0.0, 1.0, 2, periodic=False),), Method.LINEAR)
 
@@ -77,7 +77,8 @@ def _senses() -> object:
     sources = Sources([Light("", "", Pose(0.3, 0.3, 0.0), 1.0, 1.0, 1.0, "")], plan.geometry)
     eye, view = np.array((0.2, 0.2, 0.1)), View(1.0, 0.0, 0.0, 1.0)
     return (
-        first_hits(parts, fan(0.2, 0.2, 0.0, 1.0, 2), reach=1.0, height=0.1, skip=NOBODY),
+        first_hits(parts, np.array([(0.2, 0.2, 1.0, 0.0)]), reach=1.0, height=0.1, skip=NOBODY),
+        least_range(parts, (0.2, 0.2, 0.0), np.zeros(1), reach=1.0, height=0.1, skip=NOBODY),
         nearest_visible(parts, eye, view, sources.rows[:, :3].copy(), sources.owners, skip=NOBODY),
         light_at(parts, sources.rows, eye),
         LightMap(parts, sources, (0.0, 0.0, 1.0, 1.0), (2, 2), 0.0),

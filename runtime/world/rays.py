@@ -8,9 +8,11 @@ import numpy as np
 from runtime.arrays import Array, Integers
 from runtime.world.geometry import Geometry
 from runtime.world.kernels.parts import Parts
-from runtime.world.kernels.rays import cast, nearest_seen
+from runtime.world.kernels.rays import cast, nearest_hit, nearest_seen
 from runtime.world.kernels.shade import ALL_ROUND
 
+WIDER = 1.0 + 1e-9
+"""Circles around parts are so much larger that rounding loses nothing."""
 NOBODY = -1
 """An owner that nothing has."""
 
@@ -38,8 +40,12 @@ def parts_of(geometry: Geometry) -> Parts:
     ]
     order = sorted(range(len(rows)), key=lambda index: (owner[rows[index]], part[rows[index]]))
     chosen = np.array([rows[index] for index in order], dtype=np.int64)
+    found = [table[index] for index in order]
+    circles = [_circle(geometry, first, count) for first, count, _ in found]
+    around = [(*row, a, b) for row, (a, b, _) in zip(found, circles, strict=True)]
     return Parts(
-        np.array([table[index] for index in order], dtype=np.int64).reshape(-1, 3),
+        np.array(around, dtype=np.int64).reshape(-1, 5),
+        np.array([radius for *_, radius in circles]),
         geometry.low[chosen],
         geometry.high[chosen],
         geometry.transmittance[chosen],
@@ -48,17 +54,30 @@ def parts_of(geometry: Geometry) -> Parts:
     )
 
 
-def fan(x: float, y: float, heading: float, width: float, count: int) -> Array:
-    """Rays (count, 4), x, y and a unit direction, spread evenly over `width` around `heading`.
+def _circle(geometry: Geometry, first: int, count: int) -> tuple[int, int, float]:
+    """Two corners of a part, and the radius of the circle around it from half-way between them.
+
+    The two for which it is least; they stay, as parts are rigid.
+    """
+    if count == 0:
+        return first, first, float(geometry.discs[first, 2]) * WIDER
+    edges = geometry.segments[first : first + count]
+    corners = np.vstack([edges[:, :2], edges[:, 2:]])
+    middles = 0.5 * (edges[:, None, :2] + edges[None, :, 2:])
+    away: Array = np.hypot(*np.moveaxis(corners - middles[:, :, None], -1, 0)).max(axis=-1)
+    a, b = divmod(int(away.argmin()), count)
+    return first + a, first + b, float(away[a, b]) * WIDER
+
+
+def spread(width: float, count: int) -> Array:
+    """Angles (count,) spread evenly over a full `width` around 0.
 
     The outermost lie on the edges of the width; of a full circle they are no direction twice.
     """
     step = 0.0
     if count > 1:
         step = width / (count if width >= 2.0 * math.pi else count - 1)
-    middle = 0.5 * (count - 1)
-    turns = [heading + (index - middle) * step for index in range(count)]
-    return np.array([(x, y, math.cos(turn), math.sin(turn)) for turn in turns])
+    return (np.arange(count, dtype=np.float64) - 0.5 * (count - 1)) * step
 
 
 def first_hits(
@@ -70,6 +89,19 @@ def first_hits(
     has the distance 0; one that hits nothing has the reach, and -1 for the owner.
     """
     return cast(rays, reach, height, skip, parts)
+
+
+def least_range(
+    parts: Parts,
+    place: tuple[float, float, float],
+    turns: Array,
+    *,
+    reach: float,
+    height: float,
+    skip: int,
+) -> float:
+    """The least of `first_hits` from a place (x, y, heading) in directions turned by `turns`."""
+    return float(nearest_hit(place, turns, reach, height, skip, parts))
 
 
 def half_cosine(width: float) -> float:

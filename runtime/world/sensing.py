@@ -17,7 +17,7 @@ from runtime.world.kernels.shade import ALL_ROUND
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Body, DriveKind, Light, Sensor, SensorKind
 from runtime.world.odometry import Odometry
-from runtime.world.rays import View, fan, first_hits, half_cosine, nearest_visible, parts_of
+from runtime.world.rays import View, half_cosine, least_range, nearest_visible, parts_of, spread
 from runtime.world.world import Contact, Motion, SimulatedWorld
 
 
@@ -183,15 +183,20 @@ class _Range:
 
     def __init__(self, scene: _Scene, robot: int, sensor: Sensor) -> None:
         self._scene, self._robot, self._sensor = scene, robot, sensor
+        self._turns = spread(sensor.width, sensor.rays)
 
     def read(self) -> tuple[float, ...]:
         sensor = self._sensor
-        rays = fan(*self._scene.pose_of(self._robot, sensor), sensor.width, sensor.rays)
-        owner = self._scene.first + self._robot
-        distances, _ = first_hits(
-            self._scene.parts, rays, reach=sensor.reach, height=sensor.height, skip=owner
+        place = self._scene.pose_of(self._robot, sensor)
+        least = least_range(
+            self._scene.parts,
+            place,
+            self._turns,
+            reach=sensor.reach,
+            height=sensor.height,
+            skip=self._scene.first + self._robot,
         )
-        return (float(distances.min()),)
+        return (least,)
 
 
 @final

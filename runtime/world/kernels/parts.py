@@ -17,18 +17,33 @@ NOWHERE = (math.inf, -math.inf)
 class Parts(NamedTuple):
     """The p convex parts of all that stands in a world, in the order of their owners.
 
-    rows: (p, 3) first, count, owner: `count` edges from row `first` of `segments`,
+    rows: (p, 5) first, count, owner, and two corners: `count` edges from row `first` of `segments`,
     counter-clockwise, or, where `count` is 0, the circle in row `first` of `discs`. One edge alone
     is a wall without thickness.
+    radius: (p,) of a circle around it; its middle is half-way between the two corners (edges that
+    begin there and end there), or that of the circle.
     low, high, transmittance: (p,). segments: (s, 4). discs: (d, 3).
     """
 
     rows: Integers
+    radius: Array
     low: Array
     high: Array
     transmittance: Array
     segments: Array
     discs: Array
+
+
+@inlined
+def middle(parts: Parts, part: int) -> tuple[float, float]:
+    """The middle of the circle around a part."""
+    a, b = parts.rows[part, 3], parts.rows[part, 4]
+    if parts.rows[part, 1] == 0:
+        return parts.discs[a, 0], parts.discs[a, 1]
+    return (
+        0.5 * (parts.segments[a, 0] + parts.segments[b, 2]),
+        0.5 * (parts.segments[a, 1] + parts.segments[b, 3]),
+    )
 
 
 @inlined
@@ -113,6 +128,10 @@ def stands_between(
     What is touched from above or below only is not in the way; below what stands on the floor
     nothing passes.
     """
+    x, y = middle(parts, part)
+    off = (x - o[0]) * d[1] - (y - o[1]) * d[0]
+    if off * off > parts.radius[part] * parts.radius[part] * (d[0] * d[0] + d[1] * d[1]):
+        return False
     enters, leaves = span(o[0], o[1], d[0], d[1], parts, part)
     if enters > leaves or leaves < 0.0 or enters > 1.0:
         return False

@@ -5,34 +5,9 @@ import math
 import numpy as np
 
 from runtime.arrays import Array, Integers
-from runtime.kernels.cache import inlined, part
+from runtime.kernels.cache import inlined
 from runtime.world.kernels.cache import kernel
-from runtime.world.kernels.parts import Parts, span, stands_between
-
-WIDER = 1e-9
-"""Circles around parts are so much larger that rounding loses nothing."""
-
-
-@part
-def surround(parts: Parts, row: int) -> tuple[float, float, float]:
-    """A circle (x, y, radius) around a part."""
-    first, count = parts.rows[row, 0], parts.rows[row, 1]
-    segments, discs = parts.segments, parts.discs
-    if count == 0:
-        return discs[first, 0], discs[first, 1], discs[first, 2] * (1.0 + WIDER) + WIDER
-    x = y = 0.0
-    for edge in range(first, first + count):
-        x += 0.5 * (segments[edge, 0] + segments[edge, 2])
-        y += 0.5 * (segments[edge, 1] + segments[edge, 3])
-    x, y = x / count, y / count
-    largest = 0.0
-    for edge in range(first, first + count):
-        rx, ry = segments[edge, 0] - x, segments[edge, 1] - y
-        largest = max(largest, rx * rx + ry * ry)
-    if count == 1:
-        rx, ry = segments[first, 2] - x, segments[first, 3] - y
-        largest = max(largest, rx * rx + ry * ry)
-    return x, y, math.sqrt(largest) * (1.0 + WIDER) + WIDER
+from runtime.world.kernels.parts import Parts, middle, span, stands_between
 
 
 @inlined
@@ -56,7 +31,8 @@ def cast(
     count = 0
     for row in range(total):
         if parts.rows[row, 2] != skip and is_at(height, parts, row):
-            xs[count], ys[count], radii[count] = surround(parts, row)
+            xs[count], ys[count] = middle(parts, row)
+            radii[count] = parts.radius[row]
             there[count] = row
             count += 1
     distances, owners = np.full(len(rays), reach), np.full(len(rays), -1)
@@ -79,6 +55,26 @@ def cast(
                 nearest, hit = max(enters, 0.0), parts.rows[there[k], 2]
         distances[ray], owners[ray] = nearest, hit
     return distances, owners
+
+
+@kernel
+def nearest_hit(
+    place: tuple[float, float, float],
+    turns: Array,
+    reach: float,
+    height: float,
+    skip: int,
+    parts: Parts,
+) -> float:
+    """The least distance along rays from a place (x, y, heading), turned by `turns` (n,)."""
+    rays = np.empty((len(turns), 4))
+    for ray in range(len(turns)):
+        rays[ray, 0], rays[ray, 1] = place[0], place[1]
+        rays[ray, 2], rays[ray, 3] = (
+            math.cos(place[2] + turns[ray]),
+            math.sin(place[2] + turns[ray]),
+        )
+    return float(cast(rays, reach, height, skip, parts)[0].min())
 
 
 @inlined

@@ -108,6 +108,14 @@ def sources_of(geometry: Geometry, *lights: Light) -> Array:
     return Sources(lights, geometry).rows
 
 
+def fan(x: float, y: float, heading: float, turns: Array) -> Array:
+    """Rays (n, 4), x, y and a unit direction, from one place, turned from `heading`."""
+    headings = heading + turns
+    places = np.broadcast_to((x, y), (len(turns), 2))
+    rays = np.column_stack([places, np.cos(headings), np.sin(headings)])
+    return np.ascontiguousarray(rays)
+
+
 @dataclass(frozen=True)
 class Part:
     """A convex part, taken from the flat arrays by plain means."""

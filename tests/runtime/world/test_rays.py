@@ -7,13 +7,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from runtime.world.kernels.parts import middle
 from runtime.world.kernels.rays import cast, nearest_seen
 from runtime.world.model import Disc, Pose, Shape
-from runtime.world.rays import NOBODY, View, fan, first_hits, nearest_visible, parts_of
+from runtime.world.rays import (
+    NOBODY,
+    View,
+    first_hits,
+    least_range,
+    nearest_visible,
+    parts_of,
+    spread,
+)
 from tests.runtime.world.scenes import (
     ALL_ROUND,
     Part,
     box,
+    fan,
     in_the_way,
     outline,
     plain_hit,
@@ -84,8 +94,12 @@ def test_distances_to_a_wall_and_a_circle_are_those_of_the_closed_form() -> None
     parts = parts_of(plan_of(outline("pillar", round_, Pose(3.0, 1.0, 0.0))).geometry)
     away = 1.0 / math.sqrt(0.5)
 
-    straight, pillar = first_hits(parts, fan(1, 1, 0, 0, 1), reach=9.0, height=0.1, skip=NOBODY)
-    around, walls = first_hits(parts, fan(1, 1, 0, ALL_ROUND, 4), reach=9.0, height=0.1, skip=0)
+    straight, pillar = first_hits(
+        parts, fan(1, 1, 0, spread(0, 1)), reach=9.0, height=0.1, skip=NOBODY
+    )
+    around, walls = first_hits(
+        parts, fan(1, 1, 0, spread(ALL_ROUND, 4)), reach=9.0, height=0.1, skip=0
+    )
 
     assert (straight[0], pillar[0]) == (1.5, 0)
     # The rays of a full circle lie to both sides of straight ahead.
@@ -94,10 +108,10 @@ def test_distances_to_a_wall_and_a_circle_are_those_of_the_closed_form() -> None
 
 
 def test_a_fan_spreads_over_its_width_and_looks_straight_ahead_with_one_ray() -> None:
-    turns = np.arctan2(*fan(0.0, 0.0, 0.5, 1.0, 5)[:, [3, 2]].T)
+    turns = np.arctan2(*fan(0.0, 0.0, 0.5, spread(1.0, 5))[:, [3, 2]].T)
 
     assert turns == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
-    assert np.arctan2(*fan(0.0, 0.0, 0.5, 1.0, 1)[0, [3, 2]]) == pytest.approx(0.5)
+    assert np.arctan2(*fan(0.0, 0.0, 0.5, spread(1.0, 1))[0, [3, 2]]) == pytest.approx(0.5)
 
 
 def test_rays_pass_over_what_is_lower_and_below_what_hangs() -> None:
@@ -106,7 +120,7 @@ def test_rays_pass_over_what_is_lower_and_below_what_hangs() -> None:
     parts = parts_of(plan_of(low, hanging).geometry)
 
     def reached(height: float) -> float:
-        hit = first_hits(parts, fan(1, 2, 0, 0, 1), reach=9.0, height=height, skip=NOBODY)
+        hit = first_hits(parts, fan(1, 2, 0, spread(0, 1)), reach=9.0, height=height, skip=NOBODY)
         return float(hit[0][0])
 
     assert reached(0.0) == pytest.approx(0.9)
@@ -118,7 +132,7 @@ def test_a_ray_that_begins_inside_something_has_no_way_to_go() -> None:
     parts = parts_of(plan_of(outline("crate", box(1.0, 1.0), Pose(2.0, 2.0, 0.4))).geometry)
 
     distances, owners = first_hits(
-        parts, fan(2.1, 2.0, 0.0, 6.0, 7), reach=2.0, height=0.1, skip=NOBODY
+        parts, fan(2.1, 2.0, 0.0, spread(6.0, 7)), reach=2.0, height=0.1, skip=NOBODY
     )
 
     assert (distances == 0.0).all()
@@ -140,7 +154,7 @@ def test_no_ray_leaves_through_a_corner_of_the_arena() -> None:
 def test_turning_and_moving_a_scene_with_its_rays_changes_no_distance() -> None:
     rng = np.random.default_rng(5)
     plan = random_plan(rng, 10)
-    rays = fan(1.7, 1.9, 0.3, ALL_ROUND, 40)
+    rays = fan(1.7, 1.9, 0.3, spread(ALL_ROUND, 40))
     parts = parts_of(plan.geometry)
     walls = plan.geometry.things + plan.geometry.robots
     before, _ = first_hits(parts, rays, reach=3.0, height=0.1, skip=walls)
@@ -168,9 +182,34 @@ def test_parts_stand_in_the_order_of_their_owners() -> None:
     assert (parts.rows[:, 1] == 0).sum() == len(geometry.discs)
 
 
+@given(SEEDS)
+@settings(max_examples=20, deadline=None)
+def test_circles_hold_their_parts_wherever_those_move(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    plan = random_plan(rng, 6)
+    parts = parts_of(plan.geometry)
+    plan.place(plan.geometry.poses[:-1] + rng.normal(0.0, 1.0, (7, 3)), 1)
+
+    for (first, count, *_), radius, row in zip(parts.rows, parts.radius, range(99), strict=False):
+        if count:
+            edges = parts.segments[first : first + count]
+            away = edges[:, :2] - middle.py_func(parts, row)  # type: ignore[attr-defined]
+            assert np.hypot(*away.T).max() <= radius
+
+
+def test_the_least_range_is_the_least_of_the_rays() -> None:
+    geometry = random_plan(np.random.default_rng(8), 12).geometry
+    parts, turns = parts_of(geometry), spread(2.0, 7)
+    distances, _ = first_hits(parts, fan(1, 1, 0.4, turns), reach=3.0, height=0.1, skip=2)
+
+    found = least_range(parts, (1.0, 1.0, 0.4), turns, reach=3.0, height=0.1, skip=2)
+
+    assert found == pytest.approx(distances.min(), abs=1e-12)
+
+
 def test_each_kernel_is_compiled_for_one_kind_of_arguments() -> None:
     geometry = random_plan(np.random.default_rng(8), 3).geometry
-    first_hits(parts_of(geometry), fan(1, 1, 0, 1, 3), reach=1.0, height=0.1, skip=0)
+    first_hits(parts_of(geometry), fan(1, 1, 0, spread(1, 3)), reach=1.0, height=0.1, skip=0)
 
     assert [len(kernel.signatures) for kernel in (cast, nearest_seen)] == [1, 1]  # type: ignore[attr-defined]
 
