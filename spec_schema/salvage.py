@@ -20,7 +20,10 @@ from spec_schema.node import Plain
 from spec_schema.places import Path, as_written
 
 _ROUNDS = 12
-_NAMED = frozenset({"state", "control", "constants", "output"})
+_NAMED = frozenset(
+    {"state", "control", "constants", "output", "reads", "nodes", "channels"}
+    | {"sensors", "things", "scatter", "lights", "robots"}
+)
 """The sections whose keys are names that other parts refer to."""
 
 _ROLES: Final = ("sensed", "driven", "both")

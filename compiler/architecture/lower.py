@@ -1,7 +1,8 @@
 """From the checked parts to the architecture that the runtime runs."""
 
 from collections.abc import Mapping
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import TypeVar, final
 
 from compiler.architecture.parts import Part, Parts
 from compiler.findings import Findings
@@ -106,8 +107,8 @@ def _choice(name: str, part: Part, parts: Parts, findings: Findings) -> Choice:
 
 def _place(path: Path, i: int, findings: Findings) -> Path:
     """Where the i-th node of a choice stands: under `act`, in a list, or as a bare name."""
-    long, short = (*path, "act", i), (*path, i)
-    return long if len(findings.written(long)) > len(findings.written(short)) else short
+    places = (path, (*path, i), (*path, "act", i))
+    return max((findings.written(place) for place in places), key=len)
 
 
 def _can_act(node: str, part: Part, parts: Parts, path: Path, findings: Findings) -> bool:
@@ -157,50 +158,68 @@ def _setting(
     return Setting(parts.index(name), control, found, findings.origin(path))
 
 
-def lower(
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Lowered:
+    """The nodes as they run, and what they run."""
+
+    nodes: tuple[Node, ...]
+    programs: tuple[Program, ...]
+    arbiters: tuple[Arbiter, ...]
+
+
+def lower_nodes(
     parts: Parts,
     board: tuple[Signal, ...],
     inputs: Mapping[str, tuple[Input, ...]],
     commands: Mapping[str, tuple[Command, ...]],
     choices: Mapping[str, tuple[Choice, ...]],
     acts_when: Mapping[str, Code | None],
-    channels: tuple[Channel, ...],
     levels: Mapping[str, int],
+) -> Lowered:
+    """The nodes; every part of them was found sound."""
+    programs: list[Program] = []
+    arbiters: list[Arbiter] = []
+    nodes = [
+        Node(
+            name=name,
+            period=part.period,
+            response_time=part.response_time,
+            level=levels[name],
+            inputs=inputs[name],
+            outputs=tuple(i for i, s in enumerate(board) if _is_of(s, part)),
+            behavior=-1 if part.program is None else _kept(part.program, programs),
+            arbiter=-1 if part.arbiter is None else _kept(part.arbiter, arbiters),
+            module=part.spec.module or "",
+            commands=commands[name],
+            acts_when=acts_when[name],
+            choices=choices[name],
+            replaces=tuple(parts.index(other) for other in part.spec.replaces),
+            origin=parts.loaded.origin(part.path),
+        )
+        for name, part in parts.nodes.items()
+    ]
+    return Lowered(tuple(nodes), tuple(programs), tuple(arbiters))
+
+
+def lower(
+    parts: Parts,
+    board: tuple[Signal, ...],
+    lowered: Lowered,
+    channels: tuple[Channel, ...],
     order: tuple[int, ...],
 ) -> Architecture:
     """The architecture; every part of it was found sound."""
-    programs: list[Program] = []
-    arbiters: list[Arbiter] = []
-    nodes = []
-    for name, part in parts.nodes.items():
-        nodes.append(
-            Node(
-                name=name,
-                period=part.period,
-                response_time=part.response_time,
-                level=levels[name],
-                inputs=inputs[name],
-                outputs=tuple(i for i, s in enumerate(board) if _is_of(s, part)),
-                behavior=-1 if part.program is None else _kept(part.program, programs),
-                arbiter=-1 if part.arbiter is None else _kept(part.arbiter, arbiters),
-                module=part.spec.module or "",
-                commands=commands[name],
-                acts_when=acts_when[name],
-                choices=choices[name],
-                replaces=tuple(parts.index(other) for other in part.spec.replaces),
-                origin=parts.loaded.origin(part.path),
-            )
-        )
     assert parts.body is not None, "without a body there is an error"
     return Architecture(
         name=parts.spec.name,
         about=parts.spec.about or "",
         body=parts.body.body.name,
         board=board,
-        nodes=tuple(nodes),
+        nodes=lowered.nodes,
         channels=channels,
-        programs=tuple(programs),
-        arbiters=tuple(arbiters),
+        programs=lowered.programs,
+        arbiters=lowered.arbiters,
         order=order,
         source=origin_of(parts.loaded),
     )

@@ -5,7 +5,7 @@ board         every signal, its unit and its domain            signals
 inputs        each wire from end to end                        wires
 commands      what acts on which channel, as what              channels
 choices       what each choice of an arbiter means             lower
-channels      how conflicts are resolved                       resolutions, governing
+channels      how conflicts are resolved                       resolutions, exclusion
 order         circles without a delay                          graph
 timing        steps and delays against the field               timing
 levels        what controls what                               levels
@@ -16,10 +16,17 @@ from dataclasses import dataclass
 from typing import final
 
 from compiler.architecture.channels import commands_of
+from compiler.architecture.exclusion.ask import Wiring
 from compiler.architecture.graph import order_of
 from compiler.architecture.levels import check_levels
 from compiler.architecture.library import Library
-from compiler.architecture.lower import check_replaces, lower, lower_acts_when, lower_choices
+from compiler.architecture.lower import (
+    check_replaces,
+    lower,
+    lower_acts_when,
+    lower_choices,
+    lower_nodes,
+)
 from compiler.architecture.parts import Parts, gather
 from compiler.architecture.resolutions import channels_of
 from compiler.architecture.signals import board_of
@@ -59,17 +66,19 @@ def compile_parts(
     acts_when = {name: lower_acts_when(part, findings) for name, part in nodes.items()}
     for part in nodes.values():
         check_replaces(part, parts, findings)
-    channels = channels_of(commands, parts, findings)
+    levels = check_levels(inputs, signals, parts, findings)
+    lowered = wiring = None
+    if parts.body is not None and _is_whole(parts) and not findings.has_errors:
+        lowered = lower_nodes(parts, signals, inputs, commands, choices, acts_when, levels)
+        sensors = parts.body.body.sensors
+        wiring = Wiring(lowered.nodes, signals, lowered.programs, lowered.arbiters, sensors)
+    channels = channels_of(commands, parts, wiring, findings)
     order = order_of(inputs, signals, parts, findings)
     check_timing(parts, findings)
-    levels = check_levels(inputs, signals, parts, findings)
-    if _is_whole(parts) and not findings.has_errors:
-        check_standing(inputs, commands, signals, parts, findings)
-    if parts.body is None or not _is_whole(parts) or findings.has_errors:
+    if lowered is None or parts.body is None or findings.has_errors:
         return None
-    architecture = lower(
-        parts, signals, inputs, commands, choices, acts_when, channels, levels, order
-    )
+    check_standing(inputs, commands, signals, parts, findings)
+    architecture = lower(parts, signals, lowered, channels, order)
     return CompiledArchitecture(architecture, parts.body.body, findings.diagnostics, findings.notes)
 
 

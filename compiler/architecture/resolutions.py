@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from compiler.architecture.bodies import Port
-from compiler.architecture.governing import Exclusion, exclusion_of
+from compiler.architecture.exclusion.ask import Wiring
+from compiler.architecture.governing import exclusion_of
 from compiler.architecture.parts import Part, Parts
 from compiler.findings import Findings
 from runtime.arbiter import Paradigm
@@ -34,9 +35,15 @@ class Reach:
 
 
 def channels_of(
-    commands: Mapping[str, tuple[Command, ...]], parts: Parts, findings: Findings
+    commands: Mapping[str, tuple[Command, ...]],
+    parts: Parts,
+    wiring: Wiring | None,
+    findings: Findings,
 ) -> tuple[Channel, ...]:
-    """Each channel of the body, resolved; findings for those that are not, or not so."""
+    """Each channel of the body, resolved; findings for those that are not, or not so.
+
+    wiring: what exclusion is proved from; None where nodes have mistakes.
+    """
     if parts.body is None:
         return ()
     ports = parts.body.ports
@@ -54,7 +61,7 @@ def channels_of(
             for command in many
             if command.channel == i
         }
-        resolution = _resolved(Reach(port, modes), parts, findings)
+        resolution = _resolved(Reach(port, modes), parts, wiring, findings)
         origin = resolution.origin
         found.append(
             Channel(port.name, port.unit, port.low, port.high, port.rest, resolution, origin)
@@ -62,7 +69,7 @@ def channels_of(
     return tuple(found)
 
 
-def _resolved(reach: Reach, parts: Parts, findings: Findings) -> Resolution:
+def _resolved(reach: Reach, parts: Parts, wiring: Wiring | None, findings: Findings) -> Resolution:
     spec = parts.spec.channels.get(reach.port.name)
     path: Path = ("channels", reach.port.name)
     alone = Resolution(Way.SINGLE, _places(reach.nodes, parts), -1, "", "", findings.origin(path))
@@ -78,7 +85,7 @@ def _resolved(reach: Reach, parts: Parts, findings: Findings) -> Resolution:
         return alone  # who else reaches it is not known
     if spec is None:
         return _unresolved(reach, parts, alone, findings)
-    found = _declared(spec, reach, parts, path, findings)
+    found = _declared(spec, reach, parts, wiring, path, findings)
     if found is not None and found.way in ALIKE:
         _check_alike(reach, path, findings)
     return found or alone
@@ -137,7 +144,12 @@ def _replaced(name: str, part: Part) -> Iterator[tuple[str, str]]:
 
 
 def _declared(
-    spec: ResolutionSpec, reach: Reach, parts: Parts, path: Path, findings: Findings
+    spec: ResolutionSpec,
+    reach: Reach,
+    parts: Parts,
+    wiring: Wiring | None,
+    path: Path,
+    findings: Findings,
 ) -> Resolution | None:
     origin = findings.origin(path)
     places = _places(_ordered_names(reach.nodes, parts), parts)
@@ -152,11 +164,16 @@ def _declared(
             _check_layers(named, parts, (*path, key), findings)
         combined = [name for name in reach.nodes if name not in named]
         return Resolution(Way(key), _places((*combined, *named), parts), -1, "", "", origin)
-    return _governed(spec, reach, parts, path, findings)
+    return _governed(spec, reach, parts, wiring, path, findings)
 
 
 def _governed(
-    spec: ResolutionSpec, reach: Reach, parts: Parts, path: Path, findings: Findings
+    spec: ResolutionSpec,
+    reach: Reach,
+    parts: Parts,
+    wiring: Wiring | None,
+    path: Path,
+    findings: Findings,
 ) -> Resolution | None:
     """What an arbiter sees to: a blend, or that no two of them act at once."""
     origin = findings.origin(path)
@@ -170,8 +187,12 @@ def _governed(
     if key == "blend":
         _check_weighed(arbiter, reach, (*path, key), parts, findings)
         return Resolution(Way.BLEND, places, place, "", "", origin)
-    pairs = conflicts(reach.nodes, parts)
-    answer: Exclusion = exclusion_of(arbiter, pairs, parts)
+    if wiring is None:
+        return None  # what acts when is not known
+    pairs = [
+        (parts.index(first), parts.index(second)) for first, second in conflicts(reach.nodes, parts)
+    ]
+    answer = exclusion_of(wiring, pairs)
     if not answer.is_proved:
         findings.error("S345", (*path, key), answer.sentence, answer.help)
         return None

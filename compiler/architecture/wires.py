@@ -12,7 +12,7 @@ from compiler.findings import Findings
 from compiler.quantities import si_value
 from runtime.architecture import Input, Outside, Signal
 from runtime.program import Kind, Unit
-from spec_schema.dimension import DIMENSIONLESS, describe
+from spec_schema.dimension import DIMENSIONLESS
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, there_are
 from spec_schema.units import Unit as SpecUnit
@@ -87,11 +87,16 @@ def _read(entry: Entry, part: Part, board: Board, parts: Parts, findings: Findin
 
 
 def _fitting(entry: Entry, board: Board) -> list[str]:
-    """Signals of the entry's dimension."""
+    """Signals of the entry's dimension, those that are most like it first."""
     if entry.unit is None:
         return []
     wanted = parse_unit(entry.unit.text).dimension
-    return [s.name for s in board.signals if parse_unit(s.unit.text).dimension == wanted]
+    found = [s for s in board.signals if parse_unit(s.unit.text).dimension == wanted]
+
+    def unlike(signal: Signal) -> tuple[bool, bool]:
+        return signal.name.rpartition(".")[2] != entry.name, signal.kind is not entry.kind
+
+    return [signal.name for signal in sorted(found, key=unlike)]
 
 
 def _control(
@@ -118,7 +123,7 @@ def _wired(
         value = _value(entry, wire.value, path, board, findings)
         return None if value is None else Input(entry.name, -1, value, 1.0, Outside.CLIP, origin)
     place = board.places.get(wire.source)
-    at = (*path, "from")
+    at = findings.written((*path, "from"))
     if place is None:
         message = f"there is no signal {quoted(wire.source)}"
         if _could_be_told(wire.source, parts):
@@ -177,10 +182,7 @@ def _agree(entry: Entry, signal: Signal, wire: Wire, path: Path, findings: Findi
     if entry.unit is not None:
         wanted, given = parse_unit(entry.unit.text), parse_unit(signal.unit.text)
         if wanted.dimension != given.dimension:
-            message = (
-                f"'{signal.name}' is in {describe(given.dimension)}, "
-                f"and '{entry.name}' is in {describe(wanted.dimension)}"
-            )
+            message = f"'{signal.name}' is in {given.text}, and '{entry.name}' is in {wanted.text}"
             findings.error("S332", path, message, "wire it to a signal of its own dimension")
             return False
     if entry.unit is None or wire.outside is not None or _wraps(entry, signal, wire):
