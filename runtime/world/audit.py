@@ -82,7 +82,8 @@ class _Look(NamedTuple):
 class Auditor:
     """Watches a space as it moves.
 
-    names: of solids and, last, the walls. motors: of robots, the last solids.
+    names: of solids and, last, the walls. motors: of robots, the last solids. step: seconds of a
+    scenario's step.
     """
 
     def __init__(
@@ -92,31 +93,20 @@ class Auditor:
         self._names = names
         self._motors = motors
         self._first = len(names) - 1 - len(motors)
-        self._step = step
         self._every = max(round(LOOK / step), 1)
+        self._seconds = self._every * step
         self._depth, self._pair, self._time = 0.0, ("", ""), 0.0
         self._poses = space.states()[self._first :, :3]
         self._looks: tuple[deque[_Look], ...] = tuple(deque(maxlen=LOOKS) for _ in motors)
         self._open: dict[int, Jam] = {}
         self._jams: list[Jam] = []
 
-    def watch(self, steps: int) -> None:
-        """Look at what the last step, the one with this number from 1, has done."""
-        depth = self._space.deepest()
-        if depth > self._depth:
-            self._note(depth, steps)
-        if steps % self._every == 0:
-            self._look(steps * self._step)
-
-    def found(self) -> Audit:
-        """What was found up to now; a jam that lasts ends now."""
-        jams = sorted((*self._jams, *self._open.values()), key=lambda jam: (jam.begin, jam.robot))
-        return Audit(self._depth, self._pair, self._time, tuple(jams))
-
-    def _note(self, depth: float, steps: int) -> None:
-        """Note the worst contact; who it is between matters only above what is usual."""
-        self._depth, self._time = depth, steps * self._step
-        if depth > SLOP:
+    def note(self, depth: float, time: float) -> None:
+        """Note how deep the worst contact is at `time`."""
+        if depth <= self._depth:
+            return
+        self._depth, self._time = depth, time
+        if depth > SLOP:  # who it is between matters only above what is usual
             touches = self._space.touches()
             worst = int(touches.depth.argmax())
             self._pair = (
@@ -124,22 +114,31 @@ class Auditor:
                 self._names[int(touches.b[worst])],
             )
 
-    def _look(self, time: float) -> None:
+    def look(self, steps: int, time: float, seconds: float) -> None:
+        """Look at the robots after so many steps, the last part of which took `seconds`."""
+        if steps % self._every == 0:
+            self._look(time, seconds)
+
+    def found(self) -> Audit:
+        """What was found up to now; a jam that lasts ends now."""
+        jams = sorted((*self._jams, *self._open.values()), key=lambda jam: (jam.begin, jam.robot))
+        return Audit(self._depth, self._pair, self._time, tuple(jams))
+
+    def _look(self, time: float, step: float) -> None:
         touches = self._space.touches()
         poses = self._space.states()[self._first :, :3]
         travelled = np.hypot(*(poses - self._poses)[:, :2].T)
         turned = np.abs(poses[:, 2] - self._poses[:, 2])
         self._poses = poses
-        seconds = self._every * self._step
         for robot, motor in enumerate(self._motors):
             solid = self._first + robot
             ours = (touches.a == solid) | (touches.b == solid)
             others = touches.a[ours] + touches.b[ours] - solid
             held, thing = _strongest(others, touches.impulse[ours])
             forward, left, turn = motor.ramps.now
-            commanded = (np.hypot(forward, left) * seconds, abs(turn) * seconds)
+            commanded = (np.hypot(forward, left) * self._seconds, abs(turn) * self._seconds)
             done = (float(travelled[robot]), float(turned[robot]))
-            self._looks[robot].append(_Look(commanded, done, held / self._step, thing))
+            self._looks[robot].append(_Look(commanded, done, held / step, thing))
             self._judge(robot, time)
 
     def _judge(self, robot: int, time: float) -> None:
@@ -153,7 +152,7 @@ class Auditor:
             return
         force = sum(look.force for look in looks) / len(looks)
         thing = max(looks, key=lambda look: look.force).thing
-        begin = jam.begin if jam else time - LOOKS * self._every * self._step
+        begin = jam.begin if jam else time - LOOKS * self._seconds
         self._open[robot] = Jam(
             robot=self._names[self._first + robot],
             thing=self._names[thing] if thing >= 0 else "",

@@ -20,7 +20,9 @@ from runtime.world.model import Shape
 GRAVITY: Final = 9.81
 FEET: Final = (2, 2)
 """Feet along and across a footprint."""
+CELLS: Final = 24
 ROUNDS: Final = 100
+DIRECTIONS: Final = 24
 EVEN: Final = 1e-6
 """The relative difference of widths below which a footprint has no longer axis."""
 
@@ -28,7 +30,10 @@ EVEN: Final = 1e-6
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Feet:
-    """Where a thing stands: places (k, 2) in its own frame, and shares (k,) of its weight."""
+    """Where a thing stands: places (k, 2) in its own frame, and shares (k,) of its weight.
+
+    The shares are those that friction feels; together they are somewhat more than one.
+    """
 
     places: Array
     shares: Array
@@ -42,7 +47,7 @@ def feet_of(shape: Shape, spread: Spread, grid: tuple[int, int] = FEET) -> Feet:
     the centre of mass, and their mean distance from it that of the surface, so that both pure
     motions meet the right resistance. grid: clusters along the longer axis, and across it.
     """
-    points = points_of(shape)
+    points = points_of(shape, CELLS)
     points = points - points.mean(axis=0)
     centres = _along_axes(points, grid)
     for _ in range(ROUNDS):
@@ -55,8 +60,31 @@ def feet_of(shape: Shape, spread: Spread, grid: tuple[int, int] = FEET) -> Feet:
     shares = np.bincount(nearest, minlength=len(centres)) / len(points)
     centres = centres - shares @ centres
     arm = float(shares @ np.hypot(*centres.T))
-    stretched = centres * (spread.arm / arm if arm > 0.0 else 1.0)
-    return Feet(stretched + np.array([spread.x, spread.y]), shares)
+    even = centres * (spread.arm / arm if arm > 0.0 else 1.0)
+    grip = _grip(even, shares, spread.gyration)
+    return Feet(even * grip + np.array([spread.x, spread.y]), shares / grip)
+
+
+def _grip(places: Array, shares: Array, gyration: float) -> float:
+    """The share of the friction with which feet hold a motion without turning.
+
+    The physics lets the force of a foot point against its velocity as weighed by the mass that is
+    felt there, which is less across the line to the centre of mass, where a force turns the thing
+    as well: m / (1 + r² / gyration). So forces of feet do not all point straight back. Larger
+    forces, nearer to the centre, make good for that, and the mean torque stays as it is.
+    """
+    angles = np.arange(DIRECTIONS) * math.pi / DIRECTIONS
+    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    lengths = np.hypot(*places.T)
+    lines = places / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    grip = 1.0
+    for _ in range(DIRECTIONS):
+        along = ways @ lines.T
+        across = 1.0 - along**2
+        felt = 1.0 / (1.0 + (grip * lengths) ** 2 / gyration)
+        back = (along**2 + across * felt) / np.sqrt(along**2 + across * felt**2)
+        grip = float((back @ shares).mean())
+    return grip
 
 
 def stand(space: pymunk.Space, body: pymunk.Body, feet: Feet, friction: float) -> None:
@@ -85,4 +113,5 @@ def _along_axes(points: Array, grid: tuple[int, int]) -> Array:
     axes = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     width = np.sqrt(12.0 * ((points @ axes.T) ** 2).mean(axis=0))
     steps = [((np.arange(k) + 0.5) / k - 0.5) * w for k, w in zip(grid, width, strict=True)]
-    return np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2) @ axes
+    centres: Array = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2) @ axes
+    return centres

@@ -47,12 +47,12 @@ def contains(shape: Shape, points: Array) -> Booleans:
     return found
 
 
-def points_of(shape: Shape) -> Array:
+def points_of(shape: Shape, across: int = CELLS) -> Array:
     """Points (n, 2) that cover a footprint evenly: the middles of the cells inside it."""
     low, high = bounds(shape)
     extent = high - low
     # Multiples of six: no middle lies on a border between two or three equal clusters.
-    cells = 6 * np.ceil(np.maximum(CELLS * extent / extent.max(), FEWEST) / 6.0).astype(np.int64)
+    cells = 6 * np.ceil(np.maximum(across * extent / extent.max(), FEWEST) / 6.0).astype(np.int64)
     x, y = (low[k] + extent[k] * (np.arange(cells[k]) + 0.5) / cells[k] for k in range(2))
     grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     inside = grid[contains(shape, grid)]

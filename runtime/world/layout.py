@@ -5,6 +5,7 @@ robot draws from a generator of its own; but what is laid later keeps clear of w
 further scatter may move those after it.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final, final
@@ -107,7 +108,7 @@ class _Ground:
     def __init__(self, arena: tuple[tuple[float, float], ...]) -> None:
         corners = np.array(arena, dtype=np.float64)
         self._arena = np.hstack([corners, np.roll(corners, -1, axis=0)])
-        self._shapes: list[tuple[Shape, Pose, tuple[float, float]]] = []
+        self._shapes: list[tuple[Shape, Pose, tuple[float, float], float]] = []
         self._edges = self._arena
         self._circles = np.empty((0, 3))
         self._edge_heights = np.tile((-np.inf, np.inf), (len(corners), 1))
@@ -116,7 +117,7 @@ class _Ground:
     def put(self, shape: Shape, pose: Pose, heights: tuple[float, float]) -> None:
         """Note that something stands there."""
         edges, circles = footprint.in_world(shape, pose)
-        self._shapes.append((shape, pose, heights))
+        self._shapes.append((shape, pose, heights, _reach(shape)))
         self._edges = np.vstack([self._edges, edges])
         self._circles = np.vstack([self._circles, circles])
         self._edge_heights = np.vstack([self._edge_heights, np.tile(heights, (len(edges), 1))])
@@ -151,12 +152,20 @@ class _Ground:
 
     def _hidden(self, shape: Shape, pose: Pose, heights: tuple[float, float]) -> bool:
         """Whether one stands wholly within another: no outlines cross, but they overlap."""
+        reach = _reach(shape)
         return any(
-            heights[0] < there[1]
+            math.hypot(pose.x - where.x, pose.y - where.y) <= reach + other_reach
+            and heights[0] < there[1]
             and there[0] < heights[1]
             and (_covers(other, where, shape, pose) or _covers(shape, pose, other, where))
-            for other, where, there in self._shapes
+            for other, where, there, other_reach in self._shapes
         )
+
+
+def _reach(shape: Shape) -> float:
+    """How far a point of a footprint is from the origin of its frame."""
+    corners = [math.hypot(*corner) for part in shape.polygons for corner in part.vertices]
+    return max((*corners, *(math.hypot(d.x, d.y) + d.radius for d in shape.discs)))
 
 
 def _covers(shape: Shape, pose: Pose, other: Shape, where: Pose) -> bool:

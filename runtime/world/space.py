@@ -3,6 +3,7 @@
 Everything of pymunk's that has no promise to stay (its batches) is used here and nowhere else.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -33,6 +34,7 @@ BODY: Final = (
     | batch.BodyFields.VELOCITY
     | batch.BodyFields.ANGULAR_VELOCITY
 )
+SPEEDS: Final = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
 DEPTHS: Final = batch.ArbiterFields.DISTANCE_1 | batch.ArbiterFields.DISTANCE_2
 CONTACT: Final = (
     batch.ArbiterFields.BODY_A_ID
@@ -98,6 +100,7 @@ class Space:
         self._numbers = {body.id: number for number, body in enumerate(self.bodies)}
         self._numbers[self.space.static_body.id] = len(self.bodies)
         self._buffer = batch.Buffer()
+        self._arm = max((_arm(solid) for solid in solids if solid.mass is not None), default=0.0)
         self._order = b""
         self._rows = np.zeros(0, dtype=np.int64)
         self._kept = np.zeros(0, dtype=np.int64)
@@ -115,10 +118,22 @@ class Space:
         return states
 
     def deepest(self) -> float:
-        """How deep outlines stand in one another after the last step, at the worst (m)."""
+        """How deep outlines stand in one another now, at the worst (m); -inf where none touch."""
         self._buffer.clear()
         batch.get_space_arbiters(self.space, DEPTHS, self._buffer)
-        return -min(memoryview(self._buffer.float_buf()).cast("d"), default=0.0) - SLOP
+        depths = memoryview(self._buffer.float_buf()).cast("d")
+        # A pair that touches at one point has 0 for the other, which is less deep than the skin.
+        least = float(min(depths, default=math.inf))
+        return -least - SLOP
+
+    def fastest(self) -> float:
+        """A speed that no point of a body exceeds now (m/s)."""
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, SPEEDS, self._buffer)
+        found = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 3)
+        x, y, turn = np.abs(found).max(axis=0).tolist()
+        speed: float = math.hypot(x, y) + turn * self._arm
+        return speed
 
     def touches(self) -> Touches:
         """What touches now."""
@@ -147,6 +162,14 @@ class Space:
         self._kept = np.array(kept, dtype=np.int64)
         self._rows = np.array([numbers[row] for row in kept], dtype=np.int64)
         assert len(kept) == len(self.bodies), "a batch holds all bodies"
+
+
+def _arm(solid: Solid) -> float:
+    """How far a point of the outline is from the centre of mass (m)."""
+    middle = (solid.spread.x, solid.spread.y)
+    corners = [math.dist(corner, middle) for p in solid.shape.polygons for corner in p.vertices]
+    # A circle turns within itself, but for where its middle is.
+    return max((*corners, *(math.dist((d.x, d.y), middle) for d in solid.shape.discs)))
 
 
 def _added(space: pymunk.Space, solid: Solid) -> pymunk.Body:

@@ -22,14 +22,18 @@ from runtime.world.geometry import Geometry, Outline, Plan
 from runtime.world.heights import bands
 from runtime.world.kernels import nearness
 from runtime.world.layout import Layout, lay_out
-from runtime.world.model import Body, DriveKind, Light, Pose, Shape, Thing, World
-from runtime.world.space import Solid, Space, Touches
+from runtime.world.model import Body, Light, Pose, Shape, Thing, World
+from runtime.world.space import SLOP, Solid, Space, Touches
 
 LONGEST: Final = 1.0 / 200.0
 """Seconds of the longest step of the physics."""
-FURTHEST: Final = 2.1e-3
-"""Metres that bodies may come nearer to one another in it: so deep they stand in one another where
-they meet."""
+FURTHEST: Final = 2.0e-3
+"""Metres that things may come nearer to one another in it: so deep they stand in one another where
+they meet. The outlines touch SLOP before."""
+FINEST: Final = 8
+"""Parts of a step at most: nothing in these worlds is as fast as that."""
+SETTLED: Final = 0.25
+"""Seconds after the last contact in which what was hit may still move."""
 
 
 @final
@@ -126,9 +130,9 @@ class SimulatedWorld:
         self._plan = Plan(*_outlines(self.layout, self.inhabitants), arena)
         self._near = _overlapping(self._plan.geometry)
         names = self._plan.geometry.names
-        self._substeps = _substeps(self.inhabitants, step)
-        self._seconds = step / self._substeps
-        self._auditor = Auditor(self._space, names, self._motors, self._seconds)
+        self._auditor = Auditor(self._space, names, self._motors, step)
+        self._arms = tuple(_arm(robot.body) for robot in self.inhabitants)
+        self._restless = 0.0
         self._ways = tuple(_ways(robot) for robot in self.inhabitants)
         self._steps = 0
         self._states = self._space.states()
@@ -162,16 +166,20 @@ class SimulatedWorld:
 
     def advance(self) -> None:
         """Let one step pass."""
-        seconds = self._seconds
-        for part in range(self._substeps):
+        parts = self._parts()
+        seconds = self.step / parts
+        for part in range(parts):
             for motor in self._motors:
                 motor.steer(seconds)
             self._space.space.step(seconds)
             if self._senses is not None:
                 self._senses.advance(seconds)
-            self._auditor.watch(self._steps * self._substeps + part + 1)
+            depth = self._space.deepest()
+            self._restless = SETTLED if depth > -math.inf else self._restless - seconds
+            self._auditor.note(depth, self.time + (part + 1) * seconds)
         self._steps += 1
         self._touches = None
+        self._auditor.look(self._steps, self.time, seconds)
 
     def state_hash(self) -> bytes:
         """A digest of where all are and how they move, and of what the motors hold.
@@ -235,6 +243,20 @@ class SimulatedWorld:
         """How deep bodies stood in one another, and which robots were stuck, up to now."""
         return self._auditor.found()
 
+    def _parts(self) -> int:
+        """Into how many parts of the physics the coming step is cut: by what may meet in it.
+
+        Robots are as fast as their motors; what they hit may be faster for a while.
+        """
+        closing = self._space.fastest() if self._restless > 0.0 else 0.0
+        speeds = sorted(
+            math.hypot(motor.ramps.now[0], motor.ramps.now[1]) + abs(motor.ramps.now[2]) * arm
+            for motor, arm in zip(self._motors, self._arms, strict=True)
+        )
+        closing = max(closing, sum(speeds[-2:]))
+        fine = math.ceil(self.step * closing / (FURTHEST + SLOP))
+        return max(math.ceil(self.step / LONGEST - 1e-9), min(fine, FINEST), 1)
+
     def _now(self) -> Array:
         """The states of all solids after the last step."""
         if self._states_at != self._steps:
@@ -283,21 +305,10 @@ def _built(
     return space, motors
 
 
-def _substeps(inhabitants: tuple[Inhabitant, ...], step: float) -> int:
-    """Steps of the physics within one of a scenario: by the two fastest robots, if they meet."""
-    speeds = sorted((_fastest(robot.body) for robot in inhabitants), reverse=True)
-    return max(math.ceil(step / LONGEST - 1e-9), math.ceil(step * sum(speeds[:2]) / FURTHEST), 1)
-
-
-def _fastest(body: Body) -> float:
-    """How fast any point of a robot's outline may come towards something (m/s)."""
-    ahead = body.drive.speed * (
-        1.0 if body.drive.kind is DriveKind.DIFFERENTIAL else math.sqrt(2.0)
-    )
+def _arm(body: Body) -> float:
+    """How far a point of a robot's outline is from its origin, where it turns with the body."""
     corners = [math.hypot(*corner) for part in body.shape.polygons for corner in part.vertices]
-    # A circle turns within itself, but for where its middle is.
-    arms = [*corners, *(math.hypot(disc.x, disc.y) for disc in body.shape.discs)]
-    return math.hypot(ahead, body.drive.turn * max(arms, default=0.0))
+    return max((*corners, *(math.hypot(disc.x, disc.y) for disc in body.shape.discs)))
 
 
 def _outlines(

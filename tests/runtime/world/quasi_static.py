@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import brentq
 
 from runtime.arrays import Array
 
@@ -88,18 +89,15 @@ def _motion(support: Array, arm: Array, normal: Array, friction: float, guess: A
         point = motion[:2] + motion[2] * np.array([-arm[1], arm[0]])
         return motion, float(side @ point) / float(normal @ point) - side[0] / normal[0]
 
-    low, high = -friction, friction
-    motion, slip = tried(low, guess)
+    motion, slip = tried(-friction, guess)
     if slip >= 0.0 or friction == 0.0:
         return motion
-    motion, slip = tried(high, guess)
+    motion, slip = tried(friction, guess)
     if slip <= 0.0:
         return motion
-    for _ in range(20):  # it sticks: the force within the cone for which nothing slips
-        middle = 0.5 * (low + high)
-        motion, slip = tried(middle, motion)
-        low, high = (middle, high) if slip < 0.0 else (low, middle)
-    return motion
+    # It sticks: the force within the cone for which nothing slips.
+    slope = brentq(lambda slope: tried(slope, motion)[1], -friction, friction, xtol=1e-5)
+    return tried(slope, motion)[0]
 
 
 def _least_power(support: Array, arm: Array, force: Array, guess: Array) -> Array:
