@@ -47,8 +47,8 @@ class Sample:
     @property
     def text(self) -> str:
         """`at 0 s clearance is 0.29 m (avoid acts until 0.15 s)`."""
-        said = listed([reading.text for reading in self.readings], last="and")
-        what = f" {said}" if said else ""
+        said = [reading.text for reading in self.readings]
+        what = f" {listed(said, last='and')}" if said else ""
         return f"at {number(self.time)} s{what} ({listed(self.effects, last='and')})"
 
 

@@ -17,11 +17,14 @@ from compiler.architecture.exclusion.formula import Formula, both, either, holds
 from compiler.architecture.exclusion.overlap import Instant, Timing, instants, timing_of
 from compiler.architecture.exclusion.question import Actor, How, Outcome, Question
 from compiler.architecture.exclusion.reach import Reached, reached
-from compiler.architecture.exclusion.search import Found, Open, Variable, solve
+from compiler.architecture.exclusion.search import BUDGET, Found, Open, Variable, solve
 from compiler.architecture.exclusion.witness import Decision, is_plain, moments, told
 from spec_schema.wording import listed, number
 
 ONE_AT_A_TIME: Final = frozenset({How.FIRST, How.ONE})
+
+FURTHER: Final = 200
+"""The budget of a search once another is left open."""
 
 Picks: TypeAlias = Mapping[int, int]
 """For deciders that hold one outcome at a time the one that they hold, -1 for another."""
@@ -41,7 +44,8 @@ def _searched(question: Question, ways: list[Picks]) -> Answer:
     for instant in instants(question, timing):
         for way in ways:
             case = _Case(question, timing, instant, way)
-            answer = solve(case.formula(), case.variables())
+            budget = BUDGET if open_ is None else FURTHER
+            answer = solve(case.formula(), case.variables(), budget)
             if isinstance(answer, Found):
                 apart = case.witness(answer, needs_one_instant=boxes > 0)
                 return unknown or _from_memory(question, timing) or apart

@@ -28,6 +28,7 @@ class Timing:
     responses: tuple[int, ...]
     rates: tuple[int, ...]
     delays: tuple[int, ...]
+    firsts: tuple[int, ...]
     ends: int
     is_whole: bool
 
@@ -42,9 +43,14 @@ class Timing:
         return None if since < 0 else since // period * period
 
     def version(self, signal: int, instant: int) -> int:
-        """Which version of a signal is told at an instant: the first is there from 0 on."""
+        """Which version of a signal can be read at an instant.
+
+        A sensor's first one, 0, can from the beginning on; before a node's there is none, -1.
+        """
         rate = self.rates[signal]
-        return instant if rate == 0 else max((instant - self.delays[signal]) // rate, 0)
+        if rate == 0:
+            return instant
+        return max((instant - self.delays[signal]) // rate, self.firsts[signal])
 
 
 @final
@@ -69,7 +75,14 @@ def timing_of(question: Question) -> Timing:
     ends = 2 * turn + max((*steps[1], 0)) + max((*steps[3], 0))
     instants = sum(2 * ends // period + 1 for period in steps[0])
     return Timing(
-        step, steps[0], steps[1], steps[2], steps[3], ends=ends, is_whole=instants <= MOST
+        step=step,
+        periods=steps[0],
+        responses=steps[1],
+        rates=steps[2],
+        delays=steps[3],
+        firsts=tuple(-1 if signal.told else 0 for signal in question.signals),
+        ends=ends,
+        is_whole=instants <= MOST,
     )
 
 

@@ -100,7 +100,8 @@ class _Visit:
             for after, step in self._after(at, before, parent):
                 self._steps.append(step)
                 if self._both_act(after):
-                    return self._told(at)
+                    found = self._told(at)
+                    return found if self._is_told(found) else self._slow()
                 key = ((phase + 1) % len(phases), _waited(after, lasts))
                 if key not in seen:
                     seen.add(key)
@@ -260,6 +261,25 @@ class _Visit:
         if began < sampled:
             yield Decision(place, which, began, by_tick[began, place], begins=True)
         yield Decision(place, which, sampled, by_tick[sampled, place])
+
+    def _is_told(self, found: Reached) -> bool:
+        """Whether no slow signal changed between ticks that see the same version of it."""
+        known: dict[tuple[int, int], float] = {}
+        for moment in found.inputs:
+            instant = round(moment.time / float(self._timing.step))
+            for place, (_, value) in enumerate(moment.signals):
+                key = (place, self._timing.version(place, instant))
+                if known.setdefault(key, value) != value:
+                    return False
+        return True
+
+    def _slow(self) -> Undecided:
+        names = [signal.name for signal in self._question.signals if signal.every > 0.0]
+        return Undecided(
+            "both would act if what they sense changed between any two ticks, which "
+            f"{listed(names, last='and')} does not",
+            "give both the same period and response_time, or let one arbiter choose",
+        )
 
     def _open(self) -> Undecided:
         names = [self._question.deciders[d].name for d in self._used]

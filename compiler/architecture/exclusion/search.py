@@ -34,9 +34,11 @@ from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.rewrite import names_in, substitute
 from spec_schema.expressions.tree import Apply, Expr, Name, Number
 
-BUDGET: Final = 4000
+BUDGET: Final = 2000
 """Boxes and branches of one search."""
 
+NARROW: Final = 1e-9
+"""Ranges that are narrower beside their numbers are one number but for rounding."""
 VAST: Final = 1e6
 """Ranges of more units than that are without limits; their points are taken from the near end."""
 
@@ -307,6 +309,9 @@ def round_between(low: float, high: float, unit: float = 1.0) -> float:
         low, high = max(low, near - abs(near) - unit), min(high, near + abs(near) + unit)
     middle = 0.5 * low + 0.5 * high
     size = (high - low) / unit
+    if size <= NARROW * abs(middle / unit):
+        near = (round(middle / unit, digits) * unit for digits in range(16))
+        return next((value for value in near if low <= value <= high), middle)
     if size > 0.0:
         first = -math.floor(math.log10(size))
         for digits in range(first, first + 3):
