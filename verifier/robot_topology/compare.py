@@ -6,7 +6,8 @@ other places that repel. What the trace does not reach is said to be not visited
 
 Many numbers are judged at once. Each interval is so wide that all of them together hold the truth
 at the confidence of the verdict (Bonferroni), so a faithful robot is told that something differs in
-one of twenty traces at most, not in one of twenty numbers.
+about one of twenty traces, not in one of twenty numbers. About: intervals of the refit are those of
+a normal distribution, and whether a feature is there is told from a finite number of draws.
 """
 
 from typing import Final

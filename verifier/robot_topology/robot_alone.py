@@ -23,20 +23,36 @@ def rests_of_robot_alone(
     if scene.program.field.mode:
         return ()
     alone = [place for place in places if place.attractor < 0]
-    return tuple(_feature(scene, p, _moved(scene, p)) for p in alone if _would_leave(scene, p))
+    return tuple(
+        _feature(scene, p, _moved(scene, p.place)) for p in alone if _would_leave(scene, p)
+    )
 
 
 def _would_leave(scene: Scene, place: RestingPlace) -> bool:
-    moved = np.abs(_moved(scene, place))
-    return bool(np.any(moved > allowance(scene)))
+    """Whether all over the place's interval the field moves some axis too far, one way."""
+    moved = np.array([_moved(scene, at) for at in _corners(place)])
+    same_way = np.all(moved > 0.0, axis=0) | np.all(moved < 0.0, axis=0)
+    return bool(np.any(same_way & (np.min(np.abs(moved), axis=0) > allowance(scene))))
 
 
-def _moved(scene: Scene, place: RestingPlace) -> Array:
+def _corners(place: RestingPlace) -> list[Array]:
+    """The place itself, and the ends of its interval along each axis."""
+    found = [place.place]
+    for j, at in enumerate(place.at):
+        for end in (at.interval.low, at.interval.high):
+            corner = place.place.copy()
+            corner[j] += end - at.value
+            found.append(corner)
+    return found
+
+
+def _moved(scene: Scene, place: Array) -> Array:
     """How far the spec's field moves each axis (m,) in one horizon, at the rate at the place."""
     flow = flow_of(scene.program)
     low = np.array([axis.low for axis in scene.axes])
-    turned = low + np.mod(place.place - low, scene.width)
-    x = state_at(scene, np.where(scene.turns > 0.0, turned, place.place))
+    turned = low + np.mod(place - low, scene.width)
+    inside = np.clip(place, low, low + scene.width)
+    x = state_at(scene, np.where(scene.turns > 0.0, turned, inside))
     u = controls_at(scene)
     every = scene.program.field.every
     rate = (next_states(flow, x, u) - x) / every if every else rates(flow, x, u)
