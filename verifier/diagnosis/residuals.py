@@ -110,14 +110,14 @@ def _inputs(scene: Scene, settings: list[Altered], reach: Reach) -> tuple[Intege
     discrete = {s.name for s in scene.program.states if s.kind is Kind.DISCRETE}
     known: dict[tuple[str, int, bytes], Array] = {}
     for i, (setting, times) in enumerate(zip(settings, reach.times, strict=True)):
-        ends = times[:, [0, -1]].tobytes()
+        knots = times.tobytes()
         for k, name in enumerate(names):
             course = setting.courses.get(name)
             if course is None:
                 default = float(scene.flow.defaults[columns[k]])
                 values[i, :, :, k] = setting.register.get(name, default)
                 continue
-            key = (name, id(course), ends)
+            key = (name, id(course), knots)
             if key not in known:
                 known[key] = _held(course, times) if name in discrete else means(course, times)
             values[i, :, :, k] = known[key]
