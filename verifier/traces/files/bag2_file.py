@@ -16,7 +16,7 @@ from verifier.traces.files.sqlite_pages import (
     pages_claimed,
 )
 from verifier.traces.files.streams import Gathering
-from verifier.traces.files.unpacking import MOST_TIMES, UnpackError, unpack_zstd
+from verifier.traces.files.unpacking import UnpackError, unpack_zstd
 from verifier.traces.messages.channel import Channel
 
 Definitions: TypeAlias = dict[str, tuple[str, bytes]]
@@ -126,9 +126,8 @@ def _add(gathering: Gathering[int], topic: Value, log_time: Value, payload: Valu
         if payload.startswith(_ZSTD):
             try:
                 payload = unpack_zstd(payload)
-            except UnpackError:
-                detail = f"a message that can't be unpacked, or to over {MOST_TIMES} times its size"
-                gathering.lose("corrupt record", detail)
+            except UnpackError as error:
+                gathering.lose("corrupt record", f"a message: {error}")
                 return
         gathering.add(topic, log_time, payload, 0, len(payload))
     else:
