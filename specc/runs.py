@@ -153,6 +153,8 @@ def runs_of(outcomes: Sequence[Outcome]) -> Runs:
     """The outcomes, with a common verdict on those of each spec."""
     by_spec: dict[tuple[str, str], list[Verification]] = {}
     for each in verifications(outcomes):
+        if each.judgement is None:
+            continue  # decisions of several logs are not put together
         spec = each.report.spec
         by_spec.setdefault((spec.name, spec.sha256), []).append(each)
     pools = tuple(_pool(members) for members in by_spec.values() if len(members) > 1)
@@ -160,7 +162,9 @@ def runs_of(outcomes: Sequence[Outcome]) -> Runs:
 
 
 def _pool(members: Sequence[Verification]) -> Pool:
-    report = pooled(members[0].found.program, [each.judgement for each in members])
+    program = members[0].found.program
+    assert isinstance(program, Program), "what has a judgement was judged by a program"
+    report = pooled(program, [each.judgement for each in members if each.judgement])
     return Pool(tuple(members), Examination(report, origins=members[0].examination.origins))
 
 

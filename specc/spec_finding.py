@@ -5,7 +5,7 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import final
+from typing import Generic, TypeVar, final
 
 from runtime.artifact import ArtifactError, from_bytes
 from runtime.program import Program
@@ -18,17 +18,22 @@ PROJECT = "specc.yaml"
 SPECS = frozenset({".yaml", ".yml", ".specc"})
 
 
+T_co = TypeVar("T_co", covariant=True)
+
+
 @final
 @dataclass(frozen=True, eq=False, slots=True)
-class Found:
-    """The program that a trace is judged by, and how it was found, as a sentence."""
+class Found(Generic[T_co]):
+    """What a trace is judged by, and how it was found, as a sentence."""
 
-    program: Program
+    program: T_co
     how: str
 
 
-def find_spec(trace: Path, named: Path | None, program_of: Callable[[Path], Program]) -> Found:
-    """The spec for `trace`; `program_of` loads one from a path.
+def find_spec(
+    trace: Path, named: Path | None, program_of: Callable[[Path], T_co]
+) -> Found[T_co | Program]:
+    """The spec for `trace`; `program_of` loads one from a path, and an attached one is a program.
 
     Raises:
         SpecError: there is none, or the attached one is not the project's of the same name.

@@ -5,12 +5,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeAlias, final
 
+from runtime.arbiter import Arbiter
 from runtime.program import Program
+from spec_schema.arbiter import ArbiterSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import Loaded, load
 from specc.loading import load_program, refuse_log
 from specc.spec_finding import Found, find_spec
+from specc.verifying_arbiter import arbiter_for_verify, examine_arbiter
+from verifier.arbitration.reader import reader_of
 from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.report.examination import Examination
@@ -26,12 +30,12 @@ Clock: TypeAlias = Literal["auto", "sensor", "log"]
 class Verification:
     """An examination, and the spec that it was made under.
 
-    judgement: what the verdict rests on, without what was read and predicted.
+    judgement: what the verdict rests on, without what was read and predicted; of an arbiter None.
     """
 
-    found: Found
+    found: Found[Program | Arbiter]
     examination: Examination
-    judgement: Judgement
+    judgement: Judgement | None
 
     @property
     def report(self) -> Report:
@@ -76,7 +80,7 @@ def verify_by(
     trace: Path,
     spec: Path | str | Program | None,
     clock: Clock,
-    program_of: Callable[[Path], Program],
+    program_of: Callable[[Path], Program | Arbiter],
     *,
     strict: bool,
     only_verdict: bool,
@@ -88,12 +92,19 @@ def verify_by(
     Raises:
         SpecError: the spec or the log can't be used.
     """
+    found: Found[Program | Arbiter]
     if isinstance(spec, Program):
         found = Found(spec, f"{spec.name}, as given")
     else:
         found = find_spec(trace, None if spec is None else Path(spec), program_of)
     tell = progress or _in_silence
     tell("reading")
+    if isinstance(found.program, Arbiter):
+        arbiter = found.program
+        read = read_trace(trace, reader_of(arbiter), clock, reading, strict=strict)
+        tell("judging")
+        examined = examine_arbiter(arbiter, read, only_verdict=only_verdict)
+        return Verification(found, examined, None)
     read = read_trace(trace, found.program, clock, reading, strict=strict)
     tell("judging")
     judgement = judgement_of(found.program, read)
@@ -105,8 +116,20 @@ def _in_silence(_phase: str) -> None:
     """Nobody watches."""
 
 
-def program_for_verify(path: Path) -> Program:
-    """A program for `verify`, which runs nothing that a spec's author wrote.
+def program_for_verify(path: Path) -> Program | Arbiter:
+    """What `verify` judges by; it runs nothing that a spec's author wrote.
+
+    Raises:
+        SpecError: the spec is wrong, or it is code.
+    """
+    refuse_log(path)
+    if path.suffix != ".specc" and isinstance(load(path).spec, ArbiterSpec):
+        return arbiter_for_verify(path)
+    return behavior_for_verify(path)
+
+
+def behavior_for_verify(path: Path) -> Program:
+    """The program of a behavior, without running what its author wrote.
 
     Raises:
         SpecError: the spec is wrong, or its field is code.

@@ -21,7 +21,7 @@ from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
 from specc.fitting.reading import aims_of
 from specc.spec_finding import find_spec
-from specc.verifying import Clock, program_for_verify, refuse_code
+from specc.verifying import Clock, behavior_for_verify, refuse_code
 from verifier.diagnosis.diagnose import diagnose
 from verifier.report.report import Report, Standing, Verdict
 from verifier.report.wording import listed
@@ -54,7 +54,7 @@ def fit(
     """
     tell = progress or _in_silence
     logs = logs_of(traces, clock, is_strict=strict)
-    found = find_spec(logs.paths[0], None if spec is None else Path(spec), program_for_verify)
+    found = find_spec(logs.paths[0], None if spec is None else Path(spec), behavior_for_verify)
     loaded = own_text(found.program)
     refuse_code(loaded, "fit", BY_HAND)
     cases = logs.judged(found.program, tell)

@@ -11,6 +11,7 @@ from specc.figures.features import draw_features
 from specc.figures.quantities import number, quantity, seconds
 from specc.figures.style import Picture
 from specc.figures.switches import draw_switches
+from specc.pages.arbitration_part import arbitration_part
 from specc.pages.inline_svg import inline_svg
 from specc.pages.page import Block, Part, Plot, Table
 from specc.pages.sentences import ranged
@@ -37,6 +38,7 @@ def explanations(examination: Examination, prefix: str) -> tuple[Part, ...]:
     """What speaks of the robot; `prefix` keeps the figures of several traces apart."""
     of = examination
     parts = (
+        of.arbitration and arbitration_part(of.arbitration),
         of.diagnosis and diagnosis_part(of.diagnosis, of.switching, prefix),
         of.switching and switching_part(of.switching, prefix),
         of.features and features_part(of.features, prefix),
@@ -68,7 +70,7 @@ def diagnosis_part(diagnosis: Diagnosis, switching: Switching | None, prefix: st
     if diagnosis.candidates:
         caption = (
             "How much of the error each explanation takes away in windows that it was not fitted"
-            " to. Full bars are named above, in the order in which they were taken in: each is a"
+            " to; a number in a guard, at switches. Full bars are named above, in the order in which they were taken in: each is a"
             " share of what those before it left. Pale ones were tried instead, one at a time."
         )
         figure = plotted(draw_candidates(diagnosis), f"{prefix}candidates", caption)

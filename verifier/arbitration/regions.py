@@ -14,7 +14,7 @@ from verifier.arbitration.decisions import Decisions
 from verifier.arbitration.shares import share_of
 from verifier.report.arbitration import Region
 from verifier.report.report import Standing
-from verifier.report.wording import quantity, span
+from verifier.report.wording import exact, span
 
 SMALLEST_BOX: Final = 150
 """Decisions; a box of fewer is not divided."""
@@ -143,7 +143,7 @@ def _phrases(
     phrases = []
     for comparison, holds in zip(told, kind, strict=True):
         names = [name for name in comparison.reading.tokens if name in units]
-        value = quantity(chooser.values[comparison.entry], units[names[0]])
+        value = exact(chooser.values[comparison.entry], units[names[0]])
         sign = COMPARING[comparison.word] if holds else OPPOSITE[comparison.word]
         phrases.append(f"{infix(comparison.reading)} {sign} {value}")
     return tuple(dict.fromkeys(phrases))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import final
 
+from verifier.report.arbitration import Arbitration
 from verifier.report.diagnosis import Diagnosis
 from verifier.report.features import Features
 from verifier.report.limits import Limits
@@ -18,7 +19,7 @@ class Examination:
 
     switching: the changes of mode. diagnosis: why the robot departs. limits: what this trace
     can't tell, and what it would have caught. features: the robot's topology beside the spec's.
-    scores: those of similarity, for comparison only.
+    scores: those of similarity, for comparison only. arbitration: of an arbiter, how it decides.
     origins: where in the spec, `file:line:column`, each thing stands that a finding may be about:
     its name for a state or control, `fidelity` for what is demanded of the robot.
     """
@@ -30,3 +31,4 @@ class Examination:
     features: Features | None = None
     scores: Scores | None = None
     origins: dict[str, str] = field(default_factory=dict)
+    arbitration: Arbitration | None = None

@@ -6,6 +6,7 @@ up when a reader would have to change; keys may be added without that.
 
 from typing import Final
 
+from verifier.report.arbitration_record import arbitration_record
 from verifier.report.examination import Examination
 from verifier.report.findings import findings_of
 from verifier.report.record import as_json
@@ -32,5 +33,6 @@ def examination_record(examination: Examination) -> dict[str, object]:
         "limits": of.limits and limits_record(of.limits),
         "features": of.features and features_record(of.features),
         "scores": of.scores and scores_record(of.scores),
+        "arbitration": of.arbitration and arbitration_record(of.arbitration),
         "findings": [finding_record(each) for each in findings_of(of)],
     }

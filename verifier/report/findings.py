@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, final
 
+from verifier.report.arbitration import Arbitration, ThresholdStanding
 from verifier.report.diagnosis import Diagnosis
 from verifier.report.examination import Examination
 from verifier.report.features import Features, FeatureStanding
 from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.situations import exceeded
 from verifier.report.switching import Switching, Way
-from verifier.report.wording import percent, quantity, seconds, span
+from verifier.report.wording import exact, percent, quantity, seconds, span
 
 
 @final
@@ -36,6 +37,8 @@ class Rule(StrEnum):
     COVERAGE = "region-not-seen"
     INCONCLUSIVE = "inconclusive"
     SWITCHING = "mode-change"
+    DECISIONS = "decisions-differ"
+    THRESHOLD = "threshold"
     FEATURE = "feature-differs"
     DIAGNOSIS = "diagnosis"
     NOT_TOLD = "not-told"
@@ -49,6 +52,8 @@ MEANINGS: Final = {
     Rule.COVERAGE: "Too little of the declared region was seen for a PASS.",
     Rule.INCONCLUSIVE: "The trace allows no verdict.",
     Rule.SWITCHING: "A change of mode comes at another time, or leads elsewhere.",
+    Rule.DECISIONS: "The robot decides otherwise than its arbiter's spec.",
+    Rule.THRESHOLD: "A threshold by which the robot decides is not where the spec has it.",
     Rule.FEATURE: "An attractor, saddle or cycle of the robot is not where the spec has it.",
     Rule.DIAGNOSIS: "What would explain that the robot departs from its spec.",
     Rule.NOT_TOLD: "Something about the robot that this trace leaves open.",
@@ -75,6 +80,7 @@ def findings_of(examination: Examination) -> tuple[Finding, ...]:
     found = [
         *_of_report(examination.report, examination.origins.get("fidelity", "")),
         *_of_switching(examination.switching),
+        *_of_arbitration(examination.report, examination.arbitration),
         *_of_features(examination.features),
         *_of_diagnosis(examination.diagnosis),
         *_of_limits(examination),
@@ -125,6 +131,20 @@ def _of_switching(switching: Switching | None) -> Iterator[Finding]:
             yield _of_way(way, Level.ERROR, "differs from the spec")
         elif way.standing is Standing.UNDECIDED and way.expected + way.unexpected + way.missed:
             yield _of_way(way, Level.WARNING, "is undecided")
+
+
+def _of_arbitration(report: Report, of: Arbitration | None) -> Iterator[Finding]:
+    if of is None:
+        return
+    if report.verdict is Verdict.FAIL:
+        message = "; ".join(report.reasons)
+        yield Finding(Rule.DECISIONS, Level.ERROR, "choice", message, of.origin)
+    for each in of.thresholds:
+        if each.standing is ThresholdStanding.MOVED:
+            at = exact(each.fitted, each.unit)
+            own = exact(each.value, each.unit)
+            message = f"the robot decides {each.comparison} at {at}, the spec at {own}"
+            yield Finding(Rule.THRESHOLD, Level.WARNING, each.name, message, each.origin)
 
 
 def _of_way(way: Way, level: Level, what: str) -> Finding:

@@ -1,6 +1,7 @@
 """The sections of an examination as plain text: their sentences, and short tables beside them."""
 
 from runtime.program import Unit
+from verifier.report.arbitration_text import arbitration_text
 from verifier.report.diagnosis import Candidate, Diagnosis, FittedNumber
 from verifier.report.examination import Examination
 from verifier.report.features import FeatureNumber, Features
@@ -18,6 +19,7 @@ def section_texts(examination: Examination) -> tuple[str, ...]:
     """The sections that were computed and have something to say, in the order of reading."""
     of = examination
     texts = (
+        "" if of.arbitration is None else arbitration_text(of.arbitration),
         "" if of.diagnosis is None else _diagnosis(of.diagnosis, of.switching),
         "" if of.switching is None else _switching(of.switching),
         "" if of.features is None else _features(of.features),
