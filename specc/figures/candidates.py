@@ -30,5 +30,5 @@ def draw_candidates(diagnosis: Diagnosis) -> Figure:
         axes.set_yticks(range(len(shown)), [each.label for each in shown])
         axes.set_ylim(len(shown) - 0.4, -0.6)
         axes.set_xlim(0.0, 100.0)
-        axes.set_xlabel("explained of the error in held-out windows [%]")
+        axes.set_xlabel("explained of the held-out error [%]")
     return figure

@@ -15,7 +15,14 @@ from verifier.diagnosis import sentences
 from verifier.fidelity.stretches.needs import Needs, mode_of, parts_of
 from verifier.fidelity.switching.judge import FEWEST, judged_changes
 from verifier.fidelity.switching.setting import setting_of
-from verifier.fidelity.switching.thresholds import Threshold, guards_off, thresholds_of
+from verifier.fidelity.switching.thresholds import (
+    Mended,
+    Threshold,
+    Unmended,
+    Why,
+    guards_off,
+    thresholds_of,
+)
 from verifier.report.diagnosis import (
     Candidate,
     CandidateKind,
@@ -32,9 +39,6 @@ from verifier.report.wording import listed, number, suffix
 
 PLAIN: Final = (Told.NO_DIFFERENCE, Told.SAME_STRUCTURE)
 OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
-ENOUGH: Final = 0.6
-"""A number explains at least this share of what single switches say of it."""
-NONE: Final = "no difference that matters beside the tolerances was found"
 
 
 def with_guards(
@@ -51,59 +55,58 @@ def with_guards(
     setting = setting_of(program, needs, fidelity)
     switching, compared = judged_changes(setting)
     late = [w.timing is not None and w.timing.standing is Standing.EXCEEDED for w in switching.ways]
-    off = guards_off(switching.ways, late)
-    if compared is None or not off:
+    if compared is None or not guards_off(switching.ways, late):
         return diagnosis
-    found = [
-        tuple(each for each in group if each.share >= ENOUGH)
-        for group in thresholds_of(compared, needs, off)
-    ]
-    found = [group for group in found if group]
-    mended = {guard for group in found for each in group for guard in each.mends}
-    open_ = [way for i, way in enumerate(switching.ways) if i in off and i not in mended]
-    return _with(diagnosis, program, switching.ways, found, open_)
+    mended = thresholds_of(compared, needs, switching.ways, late)
+    return _with(diagnosis, program, switching.ways, mended)
 
 
-def _with(
-    diagnosis: Diagnosis,
-    program: Program,
-    ways: Sequence[Way],
-    found: Sequence[tuple[Threshold, ...]],
-    open_: Sequence[Way],
-) -> Diagnosis:
+def _with(diagnosis: Diagnosis, program: Program, ways: Sequence[Way], mended: Mended) -> Diagnosis:
     """The first of each group is taken; the others explain as well."""
+    found, open_ = mended.groups, mended.unmended
     taken = tuple(_candidate(program, ways, group) for group in found)
     moved = tuple(_refitted(program, ways, group[0]) for group in found if _is_own(group[0]))
     said = [each.sentence for each in taken]
-    said += [f"{each.label}: {sentences.either(list(each.alike))}" for each in taken if each.alike]
-    said += [_unmended(way) for way in open_]
-    told = Told.SAME_STRUCTURE
-    if open_:
-        told = Told.STRUCTURE_DIFFERS
-    elif any(each.alike for each in taken):
-        told = Told.CANNOT_TELL
-    before = diagnosis.sentences
+    said += [_as_good(program, ways, group) for group in found if len(group) > 1]
+    said += [_unmended(ways[each.guard], each) for each in open_]
+    told = _word(mended)
     if diagnosis.told is Told.NO_DIFFERENCE:
-        names = listed([each.label for each in taken])
-        opening = {
-            Told.SAME_STRUCTURE: f"same structure, other numbers: {names}",
-            Told.CANNOT_TELL: f"several explanations are as good; the first is {names}",
-        }.get(told, "the structure differs in when the robot switches")
-        before = tuple(each for each in before if each != NONE)
         return replace(
             diagnosis,
             told=told,
-            sentences=(opening, *said, *before),
+            sentences=(_opening(told, mended, [each.label for each in taken]), *said),
             refitted=(*moved, *diagnosis.refitted),
             candidates=taken,
         )
     return replace(
         diagnosis,
         told=told,
-        sentences=(*before, *said),
+        sentences=(*diagnosis.sentences, *said),
         refitted=(*diagnosis.refitted, *moved),
         candidates=(*taken, *diagnosis.candidates),
     )
+
+
+def _word(mended: Mended) -> Told:
+    if any(each.why is Why.NONE_FITS for each in mended.unmended):
+        return Told.STRUCTURE_DIFFERS
+    is_open = bool(mended.unmended) or any(len(group) > 1 for group in mended.groups)
+    return Told.CANNOT_TELL if is_open else Told.SAME_STRUCTURE
+
+
+def _opening(told: Told, mended: Mended, labels: list[str]) -> str:
+    if told is Told.STRUCTURE_DIFFERS:
+        return "the structure differs in when the robot switches"
+    if mended.unmended:
+        return "this trace does not tell why the robot switches at other times than the spec"
+    if told is Told.CANNOT_TELL:
+        return f"several explanations are as good; the first is {listed(labels)}"
+    return f"same structure, other numbers: {listed(labels)}"
+
+
+def _as_good(program: Program, ways: Sequence[Way], group: tuple[Threshold, ...]) -> str:
+    others = [_sentence(program, ways, each) for each in group[1:]]
+    return f"{_label(ways, group[0])}: {sentences.either(others)}"
 
 
 def _is_own(found: Threshold) -> bool:
@@ -156,7 +159,7 @@ def _candidate(program: Program, ways: Sequence[Way], group: tuple[Threshold, ..
         numbers=(FittedNumber("value", unit, found.number.spec, value, interval),),
         evidence=Evidence(count, found.share, gain, ()),
         is_taken=True,
-        alike=tuple(_sentence(program, ways, each) for each in group[1:]),
+        alike=tuple(_label(ways, each) for each in group[1:]),
         origin=origin or ways[found.number.guards[0]].origin,
         sentence=_sentence(program, ways, found),
     )
@@ -192,8 +195,14 @@ def _way(way: Way) -> str:
     return f"from {way.source} to {way.target}"
 
 
-def _unmended(way: Way) -> str:
-    return (
-        f"no other number in the guard {_way(way)} ({way.origin}) makes the spec switch when the"
-        " robot does"
-    )
+def _unmended(way: Way, found: Unmended) -> str:
+    name = f"the guard {_way(way)} ({way.origin})"
+    match found.why:
+        case Why.TOO_FEW:
+            switches = f"{found.switches or 'no'} switch{'' if found.switches == 1 else 'es'}"
+            return f"{switches} tell{'s' if found.switches == 1 else ''} too little of {name}"
+        case Why.NOT_TRIED:
+            shared = listed(list(found.shared))
+            return f"{name} reads {shared}, which the rates read, too; another was not tried"
+        case Why.NONE_FITS:
+            return f"no number that only guards read makes {name} open when the robot switches"

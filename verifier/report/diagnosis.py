@@ -118,6 +118,7 @@ class FittedNumber:
 class Evidence:
     """How well a candidate predicts windows that it was not fitted to.
 
+    windows: of a GUARD, switches, each told by the mean of all others.
     share: of their squared error beyond noise that it explains (1: all; below 0: it predicts
     worse). gain: of log-likelihood, natural logarithms, per-number penalty taken off. before:
     candidates that were already taken in when this one was tried.

@@ -8,7 +8,8 @@ K: changes that took a guard; D: predicted states; r: entries of the register.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, final
+from enum import Enum
+from typing import Final, TypeAlias, final
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from verifier.fidelity.shooting.jumps import register_under
 from verifier.fidelity.stretches.needs import Needs, names_read
 from verifier.fidelity.switching.guards import room_at
 from verifier.fidelity.switching.jumps import rates_at
-from verifier.fidelity.switching.means import Mean, mean_of
+from verifier.fidelity.switching.means import FEWEST, Mean, mean_of
 from verifier.fidelity.switching.setting import Setting, inputs_at
 from verifier.fidelity.switching.ways import Compared, bias_of
 from verifier.report.switching import SwitchSort, Way
@@ -31,9 +32,11 @@ NUDGE: Final = 1e-4
 """The difference for slopes, as a share of the number."""
 LITTLE: Final = 1e-3
 """A little while, as a share of the time to which states are fitted."""
-SURE: Final = 3.0
-"""A guard that reads nothing with a tolerance may be off by so many errors of its mean."""
+ENOUGH: Final = 0.6
+"""A number explains at least this share of what single switches say of it."""
 SORTS: Final = (SwitchSort.EXPECTED, SwitchSort.UNEXPECTED)
+Told: TypeAlias = tuple[Array, Array, float, float]
+"""What single switches say of a number (N,), the deviations (N,); then its room and its bias."""
 
 
 @final
@@ -60,8 +63,8 @@ class Number:
 class Threshold:
     """What a number would have to be for the robot's switches: a mean over them, minus the spec's.
 
-    share: of the squared differences of single switches that the mean explains. mends: the guards
-    that would open in time with it.
+    share: of the squared differences of single switches that the mean of all others explains.
+    mends: the guards that would open in time with it.
     """
 
     number: Number
@@ -70,31 +73,84 @@ class Threshold:
     mends: tuple[int, ...]
 
 
-def thresholds_of(
-    compared: Compared, needs: Needs, off: Sequence[int]
-) -> tuple[tuple[Threshold, ...], ...]:
-    """Of the guards that are `off`, the numbers that would mend them.
+@final
+class Why(Enum):
+    """Why no number mends a guard.
 
-    Each inner tuple holds those among which the trace can't tell. A number that the field reads,
-    too, is left alone, and so is one that would put a guard off that is in time.
+    TOO_FEW: of too few switches to tell. NOT_TRIED: it reads numbers that the field reads, too,
+    and such a number is not moved for a guard's sake. NONE_FITS: none of its numbers would do.
     """
+
+    TOO_FEW = "too few"
+    NOT_TRIED = "not tried"
+    NONE_FITS = "none fits"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Unmended:
+    """A guard that stays off, by its place among the guards.
+
+    switches: so many tell of its numbers. shared: those that the field reads, too.
+    """
+
+    guard: int
+    why: Why
+    switches: int
+    shared: tuple[str, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Mended:
+    """What mends the guards that are off, and those that nothing mends.
+
+    Each of `groups` holds numbers among which the trace can't tell.
+    """
+
+    groups: tuple[tuple[Threshold, ...], ...]
+    unmended: tuple[Unmended, ...]
+
+
+def thresholds_of(
+    compared: Compared, needs: Needs, ways: Sequence[Way], exceeded: Sequence[bool]
+) -> Mended:
+    """The numbers that would mend the guards that are off.
+
+    exceeded: which guards are late or early on average. A number that the field reads, too, is
+    left alone, and so is one that would put a guard off that is in time.
+    """
+    off = guards_off(ways, exceeded)
     found = [_threshold(compared, number) for number in _numbers(compared, needs)]
-    able = [each for each in found if each is not None and set(each.mends) & set(off)]
+    able = [each for each in found if each is not None and each.share >= ENOUGH]
     left, chosen = set(off), list[tuple[Threshold, ...]]()
     while left:
         best = max((len(left & set(each.mends)) for each in able), default=0)
-        first = next((e for e in able if best and len(left & set(e.mends)) == best), None)
-        if first is None:
+        if best == 0:
             break
+        first = next(each for each in able if len(left & set(each.mends)) == best)
         mended = left & set(first.mends)
-        alike = [each for each in able if left & set(each.mends) == mended]
-        chosen.append(tuple(alike))
+        chosen.append(tuple(each for each in able if left & set(each.mends) == mended))
         left -= mended
-    return tuple(chosen)
+    open_ = [_unmended(compared, needs, g, ways[g], is_late=exceeded[g]) for g in sorted(left)]
+    return Mended(tuple(chosen), tuple(open_))
+
+
+def _unmended(compared: Compared, needs: Needs, guard: int, way: Way, *, is_late: bool) -> Unmended:
+    """One of which nothing is known but a few odd switches is of too few, too."""
+    told, odd = len(_taken(compared, guard)), way.unexpected + way.missed
+    tokens = compared.setting.guards[guard].condition.tokens
+    held = _held(compared, needs)
+    shared = [name for name in names_read(compared.setting.program) if name in held]
+    shared = [name for name in shared if name in tokens]
+    if told < FEWEST or (not is_late and odd < FEWEST):
+        return Unmended(guard, Why.TOO_FEW, told if is_late else min(told, odd), ())
+    why = Why.NOT_TRIED if shared else Why.NONE_FITS
+    return Unmended(guard, why, told, tuple(sorted(shared)))
 
 
 def guards_off(ways: Sequence[Way], exceeded: Sequence[bool]) -> tuple[int, ...]:
-    """The guards that the robot surely takes at another time than the spec."""
+    """The guards that the robot takes at other times than the spec, be it a single time."""
     return tuple(
         index
         for index, (way, is_late) in enumerate(zip(ways, exceeded, strict=True))
@@ -104,11 +160,8 @@ def guards_off(ways: Sequence[Way], exceeded: Sequence[bool]) -> tuple[int, ...]
 
 def _numbers(compared: Compared, needs: Needs) -> list[Number]:
     """Those with names first."""
-    program, guards = compared.setting.program, compared.setting.guards
-    values = {each.name: each.value for each in program.constants}
-    values |= {each.name: each.value for each in needs.inputs if each.series is None}
-    read = names_read(program)
-    tokens = [guard.condition.tokens for guard in guards]
+    read, values = names_read(compared.setting.program), _held(compared, needs)
+    tokens = [guard.condition.tokens for guard in compared.setting.guards]
     named = [
         Number(name, value, tuple(i for i, each in enumerate(tokens) if name in each))
         for name, value in values.items()
@@ -121,6 +174,12 @@ def _numbers(compared: Compared, needs: Needs) -> list[Number]:
         if _is_number(token) and each[place + 1 : place + 2] != ("pow",)
     ]
     return [each for each in (*named, *bare) if each.guards]
+
+
+def _held(compared: Compared, needs: Needs) -> dict[str, float]:
+    """The constants and the controls that stay as they are, with their values."""
+    values = {each.name: each.value for each in compared.setting.program.constants}
+    return values | {each.name: each.value for each in needs.inputs if each.series is None}
 
 
 def _is_number(token: str) -> bool:
@@ -142,26 +201,48 @@ def _threshold(compared: Compared, number: Number) -> Threshold | None:
     mean = mean_of(values - number.spec, doubts, 0.0, bias)
     if mean.interval.low <= 0.0 <= mean.interval.high:
         return None
-    square = float(np.mean((values - number.spec) ** 2))
-    share = 1.0 - float(np.var(values)) / max(square, 1e-300)
-    own = [mean_of(e[0] - number.spec, e[1], 0.0, e[3]) for e in told.values()]
-    near = [
-        abs(each.mean - mean.mean) <= max(room, SURE * _error(each))
-        for each, (_, _, room, _) in zip(own, told.values(), strict=True)
-    ]
-    return Threshold(number, mean, share, tuple(told)) if all(near) else None
+    near = {guard: agrees(each, number, mean) for guard, each in told.items()}
+    if any(is_near is False for is_near in near.values()):
+        return None
+    mends = tuple(guard for guard, is_near in near.items() if is_near)
+    return Threshold(number, mean, share_by_others(values - number.spec), mends)
 
 
-def _error(mean: Mean) -> float:
-    half = 0.5 * (mean.interval.high - mean.interval.low)
-    return half if np.isfinite(half) else 0.0
+def share_by_others(moved: Array) -> float:
+    """What the mean of all others explains of each square (N,), together; 1 is all, N > 1.
+
+    A value is N / (N - 1) times as far from the mean of the others as from the mean of all.
+    """
+    apart = len(moved) / (len(moved) - 1.0)
+    square = float(np.mean(moved**2))
+    return 1.0 - apart**2 * float(np.var(moved)) / max(square, 1e-300)
 
 
-def _told(compared: Compared, number: Number, guard: int) -> tuple[Array, Array, float, float]:
+def agrees(told: Told, number: Number, mean: Mean) -> bool | None:
+    """Whether a guard's own switches agree with the mean; None where they are too few to deny it.
+
+    They do where they are off by no more than the tolerance, or by no more than the half-width of
+    their own interval.
+    """
+    values, doubts, room, bias = told
+    own = mean_of(values - number.spec, doubts, 0.0, bias)
+    apart = abs(own.mean - mean.mean)
+    if own.count < FEWEST:
+        return True if apart <= room else None
+    return apart <= max(room, 0.5 * (own.interval.high - own.interval.low))
+
+
+def _taken(compared: Compared, guard: int) -> Integers:
+    """The changes that took a guard, and whose states are told."""
+    sorts = np.array([each.sort in SORTS for each in compared.switches], dtype=bool)
+    good = sorts & compared.jumps.is_good & (compared.arrivals.guards == guard)
+    return np.flatnonzero(good).astype(np.int64)
+
+
+def _told(compared: Compared, number: Number, guard: int) -> Told:
     """By each switch of a guard: the number, its deviation; then what tolerances and stamps do."""
     setting, jumps = compared.setting, compared.jumps
-    sorts = np.array([each.sort in SORTS for each in compared.switches], dtype=bool)
-    rows = np.flatnonzero(sorts & jumps.is_good & (compared.arrivals.guards == guard))
+    rows = _taken(compared, guard)
     code, names = _code(setting, number, guard)
     registers, rates = _registers(setting, compared, rows)
     step = NUDGE * (abs(number.spec) or 1.0)
