@@ -75,7 +75,7 @@ def _senses() -> object:
     plan.place(np.zeros((0, 3)), 1)
     parts = parts_of(plan.geometry)
     sources = Sources([Light("", "", Pose(0.3, 0.3, 0.0), 1.0, 1.0, 1.0, "")], plan.geometry)
-    eye, view = np.array((0.2, 0.2, 0.1)), View(1.0, 0.0, 0.0, 1.0)
+    eye, view = (0.2, 0.2, 0.1), View(1.0, 0.0, 0.0, 1.0)
     return (
         first_hits(parts, np.array([(0.2, 0.2, 1.0, 0.0)]), reach=1.0, height=0.1, skip=NOBODY),
         least_range(parts, (0.2, 0.2, 0.0), np.zeros(1), reach=1.0, height=0.1, skip=NOBODY),

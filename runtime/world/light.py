@@ -17,9 +17,9 @@ from runtime.world.kernels.parts import Parts
 from runtime.world.kernels.shade import illuminance
 from runtime.world.kernels.shadow_map import shine
 from runtime.world.model import Light
-from runtime.world.rays import NOBODY, half_cosine
+from runtime.world.rays import NOBODY, Place, View, half_cosine
 
-NO_VIEW = np.array([1.0, 0.0, half_cosine(2.0 * math.pi)])
+ANYWHERE = View(1.0, 0.0, half_cosine(2.0 * math.pi), 0.0)
 """The view of a meter that accepts light from all round."""
 
 
@@ -34,9 +34,11 @@ class Sources:
 
     def __init__(self, lights: Sequence[Light], geometry: Geometry) -> None:
         self._lights = tuple(lights)
+        self._placed: list[list[float]] = [[] for _ in self._lights]
         self._geometry = geometry
         found = [geometry.names.index(light.on) if light.on else NOBODY for light in lights]
         self.owners = np.array(found, dtype=np.int64)
+        self._carried = [index for index, owner in enumerate(found) if owner >= 0]
         self.rows = np.zeros((len(found), 8))
         self.rows[:, 2] = [light.height for light in lights]
         self.rows[:, 3] = [light.power for light in lights]
@@ -47,12 +49,16 @@ class Sources:
 
     def place(self) -> None:
         """Bring the lights to where their carriers are."""
-        for index in np.flatnonzero(self.owners >= 0).tolist():
+        for index in self._carried:
             self._put(index)
 
     def _put(self, index: int) -> None:
         pose, owner = self._lights[index].pose, self.owners[index]
-        x, y, heading = self._geometry.poses[owner].tolist() if owner >= 0 else (0.0, 0.0, 0.0)
+        at = self._geometry.poses[owner].tolist() if owner >= 0 else [0.0, 0.0, 0.0]
+        if at == self._placed[index]:
+            return
+        self._placed[index] = at
+        x, y, heading = at
         cosine, sine = math.cos(heading), math.sin(heading)
         self.rows[index, :2] = (
             x + cosine * pose.x - sine * pose.y,
@@ -62,14 +68,13 @@ class Sources:
 
 
 def light_at(
-    parts: Parts, sources: Array, place: Array, *, view: Array = NO_VIEW, skip: int = NOBODY
+    parts: Parts, sources: Array, place: Place, *, view: View = ANYWHERE, skip: int = NOBODY
 ) -> float:
     """Lux that reaches a place (x, y, height) from all sources (l, 8), ambient light left out.
 
-    view: (3,) unit direction and `half_cosine` of the angle that a meter accepts light from.
-    skip: the owner that throws no shadow.
+    view: from where a meter accepts light; it has no reach. skip: the owner that throws no shadow.
     """
-    return float(illuminance(place, view, sources, skip, parts, np.empty(len(sources))))
+    return float(illuminance(place, view, sources, skip, parts))
 
 
 @final

@@ -1,7 +1,7 @@
 """Rays and lines of sight through a world: what is hit or seen, how far away, and whose it is."""
 
 import math
-from typing import NamedTuple, final
+from typing import NamedTuple, TypeAlias, final
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from runtime.world.kernels.parts import Parts
 from runtime.world.kernels.rays import cast, nearest_hit, nearest_seen
 from runtime.world.kernels.shade import ALL_ROUND
 
+Place: TypeAlias = tuple[float, float, float]
+"""Three floats, none of them an int: kernels are compiled for those."""
 WIDER = 1.0 + 1e-9
 """Circles around parts are so much larger that rounding loses nothing."""
 NOBODY = -1
@@ -93,7 +95,7 @@ def first_hits(
 
 def least_range(
     parts: Parts,
-    place: tuple[float, float, float],
+    place: Place,
     turns: Array,
     *,
     reach: float,
@@ -114,12 +116,12 @@ def half_cosine(width: float) -> float:
 
 
 def nearest_visible(
-    parts: Parts, eye: Array, view: View, targets: Array, owners: Integers, *, skip: int
+    parts: Parts, eye: Place, view: View, targets: Array, owners: Integers, *, skip: int
 ) -> tuple[int, float]:
-    """Which of the targets (m, 3) an eye (3,) sees nearest, and how far along the floor.
+    """Which of the targets (m, 3) an eye (x, y, height) sees nearest, and how far along the floor.
 
     A target is hidden where anything stands between it and the eye, at the heights of the line
     between them: all but `skip` and the target's own owner. (-1, reach) where it sees none.
     """
-    index, distance = nearest_seen(eye, np.array(view), targets, owners, skip, parts)
+    index, distance = nearest_seen(eye, view, targets, owners, skip, parts)
     return int(index), float(distance)

@@ -13,8 +13,7 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.chance import generator
 from runtime.world.geometry import Geometry
-from runtime.world.kernels.shade import ALL_ROUND
-from runtime.world.light import LightMap, Sources, light_at
+from runtime.world.light import ANYWHERE, LightMap, Sources, light_at
 from runtime.world.model import Body, DriveKind, Light, Sensor, SensorKind
 from runtime.world.odometry import Odometry
 from runtime.world.rays import View, half_cosine, least_range, nearest_visible, parts_of, spread
@@ -94,7 +93,7 @@ class Senses:
         body, scene = self._bodies[robot], self._scene
         x, y, _ = scene.pose(robot)
         place = (x, y, 0.5 * (body.low + body.high))
-        return scene.lux(place, View(1.0, 0.0, ALL_ROUND, 0.0), robot) + scene.ambient
+        return scene.lux(place, ANYWHERE, robot) + scene.ambient
 
     def light_map(self, cells: tuple[int, int]) -> LightMap:
         """The light on the floor of the arena, on (nx, ny) cells over its bounding box."""
@@ -155,9 +154,8 @@ class _Scene:
 
     def lux(self, place: tuple[float, float, float], view: View, robot: int) -> float:
         self.sources.place()
-        view_array = np.array((view.x, view.y, view.cosine))
         rows, owner = self.sources.rows, self.first + robot
-        return light_at(self.parts, rows, np.array(place), view=view_array, skip=owner)
+        return light_at(self.parts, rows, place, view=view, skip=owner)
 
 
 @final
@@ -257,7 +255,7 @@ class _Sight:
             self._targets[count:] = scene.sources.rows[self._lights, :3]
         x, y, heading = scene.pose_of(self._robot, sensor)
         view = View(math.cos(heading), math.sin(heading), self._cosine, sensor.reach)
-        eye = np.array((x, y, sensor.height))
+        eye = (x, y, sensor.height)
         seen, distance = nearest_visible(
             scene.parts, eye, view, self._targets, self._owners, skip=scene.first + self._robot
         )

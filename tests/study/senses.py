@@ -65,7 +65,7 @@ def main() -> None:
 
     turns = rng.uniform(0.0, 7.0, RAYS)
     rays = np.column_stack([rng.uniform(0.2, 3.8, (RAYS, 2)), np.cos(turns), np.sin(turns)])
-    place, fan = np.array((2.0, 2.0, 0.05)), spread(1.0, 9)
+    place, fan = (2.0, 2.0, 0.05), spread(1.0, 9)
     first_hits(parts, rays[:1], reach=10.0, height=0.04, skip=NOBODY)
     least_range(parts, (2.0, 2.0, 0.0), fan, reach=2.0, height=0.04, skip=NOBODY)
     light_at(parts, sources.rows, place)

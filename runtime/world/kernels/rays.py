@@ -95,7 +95,12 @@ def is_hidden(
 
 @kernel
 def nearest_seen(
-    eye: Array, view: Array, targets: Array, owners: Integers, skip: int, parts: Parts
+    eye: tuple[float, float, float],
+    view: tuple[float, float, float, float],
+    targets: Array,
+    owners: Integers,
+    skip: int,
+    parts: Parts,
 ) -> tuple[int, float]:
     """The nearest of targets (m, 3) that an eye (x, y, height) sees, and how far it is.
 
@@ -103,7 +108,7 @@ def nearest_seen(
     owners: (m,) whose the targets are; those do not hide them. Distances are along the floor.
     Returns -1 and the reach where none is seen.
     """
-    x, y, z = eye[0], eye[1], eye[2]
+    x, y, z = eye
     best, nearest = -1, view[3]
     for row in range(len(targets)):
         dx, dy = targets[row, 0] - x, targets[row, 1] - y

@@ -28,13 +28,16 @@ def arrives(light: Array, dx: float, dy: float, dz: float) -> float:
 
 @kernel
 def illuminance(
-    place: Array, view: Array, sources: Array, skip: int, parts: Parts, by_source: Array
+    place: tuple[float, float, float],
+    view: tuple[float, float, float, float],
+    sources: Array,
+    skip: int,
+    parts: Parts,
 ) -> float:
     """Lux at a place (x, y, height), over all sources (l, 8).
 
     view: a unit direction and the cosine of half the angle from which light is accepted; light
-    from right above is accepted always. skip: an owner that shades nothing. by_source: (l,)
-    receives the share of each source.
+    from right above is accepted always. skip: an owner that shades nothing.
     """
     total = 0.0
     for index in range(len(sources)):
@@ -56,6 +59,5 @@ def illuminance(
                     if share == 0.0:
                         break
             lux *= share
-        by_source[index] = lux
         total += lux
     return total

@@ -11,7 +11,7 @@ from runtime.arrays import Array
 from runtime.world.geometry import Geometry, Plan
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Disc, Light, Polygon, Pose, Shape
-from runtime.world.rays import NOBODY, half_cosine, parts_of
+from runtime.world.rays import NOBODY, View, half_cosine, parts_of
 from tests.runtime.world.scenes import (
     box,
     lamp,
@@ -30,7 +30,7 @@ SMALL = (13, 11)
 
 
 def lux(geometry: Geometry, light: Light, x: float, y: float, height: float = 0.0) -> float:
-    return light_at(parts_of(geometry), sources_of(geometry, light), np.array([x, y, height]))
+    return light_at(parts_of(geometry), sources_of(geometry, light), (x, y, height))
 
 
 def map_of(plan: Plan, *lights: Light, cells: tuple[int, int] = SMALL) -> LightMap:
@@ -45,16 +45,18 @@ def test_a_meter_says_what_plain_geometry_says(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
     geometry = random_plan(rng, count).geometry
     rows = sources_of(geometry, *random_lights(rng, 3, count))
-    place = np.array([*rng.uniform(0.0, 4.0, 2), rng.uniform(0.0, 0.2)])
+    x, y, height = rng.uniform(0.0, (4.0, 4.0, 0.2)).tolist()
     heading, width, skip = float(rng.uniform(-4, 4)), float(rng.uniform(0.5, 6)), count
-    view = np.array([math.cos(heading), math.sin(heading), half_cosine(width)])
+    view = View(math.cos(heading), math.sin(heading), half_cosine(width), 0.0)
 
-    found = light_at(parts_of(geometry), rows, place, skip=skip)
-    ahead = light_at(parts_of(geometry), rows, place, view=view, skip=skip)
+    found = light_at(parts_of(geometry), rows, (x, y, height), skip=skip)
+    ahead = light_at(parts_of(geometry), rows, (x, y, height), view=view, skip=skip)
 
     plain = plain_parts(geometry)
-    assert found == pytest.approx(plain_lux(plain, rows, place, skip, None), rel=1e-9, abs=1e-12)
-    expected = plain_lux(plain, rows, place, skip, (heading, width))
+    assert found == pytest.approx(
+        plain_lux(plain, rows, np.array([x, y, height]), skip, None), rel=1e-9, abs=1e-12
+    )
+    expected = plain_lux(plain, rows, np.array([x, y, height]), skip, (heading, width))
     assert ahead == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
@@ -69,7 +71,9 @@ def test_the_map_says_what_a_meter_on_the_floor_says(seed: int, count: int) -> N
     found = map_of(plan, *lights)
 
     parts, rows = parts_of(plan.geometry), sources_of(plan.geometry, *lights)
-    expected = [[light_at(parts, rows, np.array([x, y, 0.0])) for x in found.xs] for y in found.ys]
+    expected = [
+        [light_at(parts, rows, (x, y, 0.0)) for x in found.xs.tolist()] for y in found.ys.tolist()
+    ]
     assert found.lux == pytest.approx(np.array(expected), rel=1e-9, abs=1e-12)
 
 
@@ -171,8 +175,8 @@ def test_a_light_is_carried_along_and_its_carrier_does_not_shade_it() -> None:
 
     assert sources.rows[0, :2] == pytest.approx([2.0, 2.2])
     parts = parts_of(plan.geometry)
-    assert light_at(parts, sources.rows, np.array([2.0, 3.0, 0.0])) > 0.0
-    assert light_at(parts, sources.rows, np.array([2.0, 1.0, 0.0])) == 0.0
+    assert light_at(parts, sources.rows, (2.0, 3.0, 0.0)) > 0.0
+    assert light_at(parts, sources.rows, (2.0, 1.0, 0.0)) == 0.0
 
 
 def test_a_wall_of_a_bent_arena_keeps_the_light_out() -> None:
@@ -240,4 +244,4 @@ def test_light_meets_no_end_where_there_are_no_lights() -> None:
 
     assert (dark.lux == 3.0).all()
     nothing: Array = np.zeros((0, 8))
-    assert light_at(parts_of(geometry), nothing, np.zeros(3), skip=NOBODY) == 0.0
+    assert light_at(parts_of(geometry), nothing, (0.0, 0.0, 0.0), skip=NOBODY) == 0.0

@@ -66,7 +66,8 @@ def test_the_nearest_that_nothing_hides_is_seen(seed: int, count: int) -> None:
     view = View(math.cos(heading), math.sin(heading), math.cos(0.5 * width), 2.0)
 
     found, distance = nearest_visible(
-        parts_of(geometry), eye, view, targets, owners.astype(np.int64), skip=robot
+        *(parts_of(geometry), tuple(eye.tolist()), view, targets, owners.astype(np.int64)),
+        skip=robot,
     )
 
     seen = {
