@@ -125,8 +125,11 @@ def test_what_is_said_and_not_yet_in_effect_is_in_the_hash() -> None:
     late = [busy(1), busy(1)]
     for scheduler in late:
         scheduler.run(100)
-    pending = late[0]._pending  # what a hash must not leave out
-    pending[0][3].outputs[...] += 1e-9
+    waiting = late[0]._pending  # what a hash must not leave out
+    assert waiting
+    for *_, said in waiting:
+        said.outputs[...] += 1e-9
+        said.commands[...] += 1e-9
 
     assert late[0].state_hash() != late[1].state_hash()
 
