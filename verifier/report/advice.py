@@ -34,8 +34,9 @@ def _of_diagnosis(report: Report, diagnosis: Diagnosis) -> list[str]:
     taken = [each for each in diagnosis.candidates if each.is_taken][:MOST]
     if diagnosis.told not in {Told.SAME_STRUCTURE, Told.STRUCTURE_DIFFERS} or not taken:
         return []
-    if all(each.kind is CandidateKind.PARAMETER for each in taken):
-        numbers = listed([_number(each) for each in taken])
+    own = {each.name for each in diagnosis.refitted if each.is_moved}
+    if all(_is_own(each, own) for each in taken):
+        numbers = listed([_number(each, own) for each in taken])
         fit = f"specc fit {report.trace.source} --spec {report.spec.file}"
         return [
             (
@@ -43,17 +44,23 @@ def _of_diagnosis(report: Report, diagnosis: Diagnosis) -> list[str]:
                 " it); else mend the robot"
             )
         ]
-    return [f"settle first what explains it: {listed([_number(each) for each in taken])}"]
+    return [f"settle first what explains it: {listed([_number(each, own) for each in taken])}"]
 
 
-def _number(candidate: Candidate) -> str:
+def _is_own(candidate: Candidate, own: set[str]) -> bool:
+    """Whether it is a number of the spec with a name; own: those that were moved."""
+    is_of_guard = candidate.kind is CandidateKind.GUARD and own.issuperset(candidate.applies_to)
+    return is_of_guard or candidate.kind is CandidateKind.PARAMETER
+
+
+def _number(candidate: Candidate, own: set[str]) -> str:
     """An explanation with its size, where it has one."""
     if not candidate.numbers or candidate.kind in WITHOUT_SIZE:
         return candidate.label
     number = candidate.numbers[0]
     size = quantity(abs(number.value) if number.name == "delay" else number.value, number.unit)
-    is_parameter = candidate.kind is CandidateKind.PARAMETER
-    return f"{candidate.label} = {size}" if is_parameter else f"{candidate.label} ({size})"
+    label = candidate.label
+    return f"{label} = {size}" if _is_own(candidate, own) else f"{label} ({size})"
 
 
 def _of_switching(switching: Switching | None) -> list[str]:
