@@ -9,9 +9,10 @@ from verifier.diagnosis.altered import Effect, Values
 from verifier.diagnosis.candidates.readings import Reading
 from verifier.diagnosis.naming import kind_of, slip_of
 from verifier.diagnosis.parameters import Parameter
+from verifier.report import situations
 from verifier.report.diagnosis import CandidateKind, DepartureAfter, FittedNumber
 from verifier.report.report import Interval, RegionMean, Standing
-from verifier.report.wording import listed, number, percent, quantity, span, suffix
+from verifier.report.wording import listed, number, percent, quantity, suffix
 
 MOST: Final = 3
 """So many names in a row, at most."""
@@ -165,11 +166,5 @@ def within(name: str, departure: float, tolerance: float, unit: Unit) -> str:
 
 
 def where(name: str, region: RegionMean, units: dict[str, Unit]) -> str:
-    """`heading differs from 0.2 to 0.4 rad of heading`."""
-    parts = [f"{key} is {value}" for key, value in region.values.items()]
-    parts += [f"{key} {span(*ends, units[key])}" for key, ends in region.bounds.items()]
-    if region.moved is not None:
-        parts.append(f"it moves by about {quantity(region.moved, units[name])}")
-    if region.hurried is not None:
-        parts.append(f"what drives it is {'rising' if region.hurried > 0.0 else 'falling'}")
-    return f"{name} still differs where {listed(parts)}" if parts else f"{name} still differs"
+    """`heading still differs where heading is 0.2 to 0.4 rad and it should fall by 0.3 rad`."""
+    return f"{name} still differs {situations.where(region, units[name], units)}".rstrip()

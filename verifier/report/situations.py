@@ -29,7 +29,7 @@ def _worst(result: VariableResult, units: dict[str, Unit]) -> str:
     """In which situation it is worst, and in which direction; none may stand out."""
     region = result.worst
     if region is None or abs(region.mean) <= result.tolerance:
-        return ": windows that are alike err alike, some above and some below the prediction"
+        return ": windows that are alike err alike"
     side = "above" if region.mean > 0.0 else "below"
     ends = sorted([abs(region.interval.low), abs(region.interval.high)])
     place = where(region, result.unit, units)
