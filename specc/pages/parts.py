@@ -70,8 +70,9 @@ def diagnosis_part(diagnosis: Diagnosis, switching: Switching | None, prefix: st
     if diagnosis.candidates:
         caption = (
             "How much of the error each explanation takes away in windows that it was not fitted"
-            " to; a number in a guard, at switches. Full bars are named above, in the order in which they were taken in: each is a"
-            " share of what those before it left. Pale ones were tried instead, one at a time."
+            " to (a number of a guard: at switches). Full bars are named above, in the order in"
+            " which they were taken in: each is a share of what those before it left. Pale ones"
+            " were tried instead, one at a time."
         )
         figure = plotted(draw_candidates(diagnosis), f"{prefix}candidates", caption)
         titles = ("explanation", "numbers", "explains", "log-likelihood", "as good")
