@@ -114,10 +114,10 @@ class Differential:
             for _, joint in self._wheels:
                 joint.max_force = self.grip / 2.0 * (1.0 if self._grips else ROLLING)
         speed, _, turn = self.ramps.now
-        heading = self._solid.angle
+        heading = _next_heading(self._solid, seconds)
         cosine, sine = math.cos(heading), math.sin(heading)
         # Along the middle of the arc, so that turning while driving leaves no error of first order;
-        # what differs between the wheels is a turn of the rigid axle as it is now.
+        # what differs between the wheels is a turn of the rigid axle as it is then.
         ahead = heading + 0.5 * turn * seconds
         x, y = speed * math.cos(ahead), speed * math.sin(ahead)
         apart = turn * self._half
@@ -165,7 +165,7 @@ class Holonomic:
         forward, left, turn = self.ramps.now
         # The channels say how the origin of the body moves; the ghost holds its centre of mass.
         forward, left = forward - turn * self._centre[1], left + turn * self._centre[0]
-        ahead = self._solid.angle + 0.5 * turn * seconds
+        ahead = _next_heading(self._solid, seconds) + 0.5 * turn * seconds
         cosine, sine = math.cos(ahead), math.sin(ahead)
         self._ghost.velocity = (forward * cosine - left * sine, forward * sine + left * cosine)
         self._ghost.angular_velocity = turn
@@ -182,6 +182,12 @@ def local_velocity(solid: pymunk.Body, centre: tuple[float, float]) -> tuple[flo
     forward = cosine * u + sine * v + turn * centre[1]
     left = cosine * v - sine * u - turn * centre[0]
     return forward, left, turn
+
+
+def _next_heading(solid: pymunk.Body, seconds: float) -> float:
+    """The heading at which the coming step finds the next velocities: it moves bodies first."""
+    heading: float = solid.angle + solid.angular_velocity * seconds
+    return heading
 
 
 def _ghost(

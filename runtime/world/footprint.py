@@ -16,6 +16,8 @@ CELLS: Final = 48
 """Cells along the longer side of a footprint, where it is taken as points."""
 FEWEST: Final = 12
 """Cells along its shorter side, at least."""
+ENOUGH: Final = 100
+FINEST: Final = 1000
 
 
 @final
@@ -48,15 +50,22 @@ def contains(shape: Shape, points: Array) -> Booleans:
 
 
 def points_of(shape: Shape, across: int = CELLS) -> Array:
-    """Points (n, 2) that cover a footprint evenly: the middles of the cells inside it."""
+    """Points (n, 2) that cover a footprint evenly: the middles of the cells inside it.
+
+    across: cells along the longer side; more where so few are inside that they say little.
+    """
     low, high = bounds(shape)
     extent = high - low
-    # Multiples of six: no middle lies on a border between two or three equal clusters.
-    cells = 6 * np.ceil(np.maximum(across * extent / extent.max(), FEWEST) / 6.0).astype(np.int64)
-    x, y = (low[k] + extent[k] * (np.arange(cells[k]) + 0.5) / cells[k] for k in range(2))
-    grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    inside = grid[contains(shape, grid)]
-    return inside if len(inside) else np.array([(low + high) / 2.0])
+    while True:
+        # Multiples of six: no middle lies on a border between two or three equal clusters.
+        least = np.maximum(across * extent / extent.max(), FEWEST)
+        cells = 6 * np.ceil(least / 6.0).astype(np.int64)
+        x, y = (low[k] + extent[k] * (np.arange(cells[k]) + 0.5) / cells[k] for k in range(2))
+        grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+        inside = grid[contains(shape, grid)]
+        if len(inside) >= ENOUGH or across >= FINEST:
+            return inside if len(inside) else np.array([(low + high) / 2.0])
+        across *= 2
 
 
 def bounds(shape: Shape) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ from runtime.world import footprint
 from runtime.world.kernels import nearness
 from runtime.world.model import Body, Pose, Scatter, Shape, Thing, World
 
-TRIES: Final = 20_000
+TRIES: Final = 5_000
 """Places tried before there is said to be no room."""
 ROOM: Final = 0.02
 """How far from all else (m) a robot starts whose place is random."""
