@@ -126,6 +126,13 @@ def compared(left: Expr, right: Expr, allowed: int) -> Formula:
     """A comparison; plain where both sides are numbers, or the same number always."""
     if isinstance(left, Number) and isinstance(right, Number):
         return bool(relation(left.value, right.value) & allowed)
+    for one, other, among in ((left, right, allowed), (right, left, mirrored(allowed))):
+        cases = _cases(one)
+        if cases:
+            return either(
+                both((where, compared(value, other, among) if value else bool(among & NONE)))
+                for where, value in cases
+            )
     if same(left, right) and not allowed & EQUAL:
         return Atom(left, right, allowed & NONE) if allowed & NONE else False
     if isinstance(left, Number) or (
@@ -133,6 +140,33 @@ def compared(left: Expr, right: Expr, allowed: int) -> Formula:
     ):
         return Atom(right, left, mirrored(allowed))
     return Atom(left, right, allowed)
+
+
+def _cases(expr: Expr) -> list[tuple[Formula, Expr | None]]:
+    """What picks one of its operands, as what it is where; None for no number. Else nothing."""
+    match expr:
+        case Apply(op="where", operands=(c, a, b)):
+            return [(truth(c), a), (denied(truth(c)), b)]
+        case Apply(op="min", operands=(a, b)):
+            return _picked(a, b, LESS | EQUAL)
+        case Apply(op="max", operands=(a, b)):
+            return _picked(a, b, MORE | EQUAL)
+        case Apply(op="clip", operands=(a, low, high)):
+            return _cases(Apply("min", (Apply("max", (a, low)), high)))
+        case Apply(op="abs", operands=(a,)):
+            sign = [compared(a, ZERO, allowed) for allowed in (MORE | EQUAL, LESS, NONE)]
+            return [(sign[0], a), (sign[1], Apply("neg", (a,))), (sign[2], None)]
+    return []
+
+
+def _picked(a: Expr, b: Expr, first: int) -> list[tuple[Formula, Expr | None]]:
+    """The first of two where its relation to the second is one of `first`."""
+    second = EVERY ^ NONE ^ first
+    return [
+        (compared(a, b, first), a),
+        (compared(a, b, second), b),
+        (compared(a, b, NONE), None),
+    ]
 
 
 def mirrored(allowed: int) -> int:

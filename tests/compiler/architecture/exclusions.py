@@ -117,8 +117,7 @@ class Case:
         last = round(witness.at / STEP)
         read = {
             sensor: [
-                self._value(witness, name, rate * (n + 1) + late)
-                for n in range((last // rate) + 1)
+                self._value(witness, name, rate * (n + 1) + late) for n in range((last // rate) + 1)
             ]
             for sensor, (name, (rate, late)) in enumerate(zip(SIGNALS, self.sensors, strict=True))
         }

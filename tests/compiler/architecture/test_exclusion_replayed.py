@@ -8,7 +8,7 @@ from compiler.architecture.exclusion.decide import decide
 from tests.compiler.architecture.exclusions import Case, cases, random_readings
 
 
-@settings(max_examples=150)
+@settings(max_examples=40)
 @given(cases(), st.integers(0, 2**32 - 1))
 def test_an_answer_is_what_the_scheduler_does(case: Case, seed: int) -> None:
     answer = decide(case.question)
