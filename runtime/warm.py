@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from runtime.arbitration.kernels.compete import compete
 from runtime.code import Code
 from runtime.flow import flow_of
 from runtime.integrators import adaptive, fixed_steps
@@ -18,6 +19,8 @@ from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.machine import evaluate
 from runtime.program import Field, Kind, Origin, Program, Role, State, Unit
+from runtime.scheduler.inputs import Inputs
+from runtime.scheduler.ticker import Ticker
 from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
 from runtime.world.geometry import Plan
@@ -85,6 +88,17 @@ def _senses() -> object:
     )
 
 
+def _tick() -> object:
+    inputs = Inputs((), {})
+    ticker = Ticker(NO_MOTION, inputs, (), None, 1.0, np.random.default_rng(0))
+    return ticker.tick(np.zeros(1), allowed=True)
+
+
+def _competition() -> object:
+    one = np.ones(1)
+    return compete(one, one, np.ones((1, 1)), np.ones((1, 1)), 0.1, 0.1)
+
+
 KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("interpolation", block_address),
     ("table lookup", lambda: lookup(TABLE, [0.5])),
@@ -95,6 +109,8 @@ KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("fixed steps", _step),
     ("adaptive steps", _adapt),
     ("rays and light", _senses),
+    ("ticks of behaviors", _tick),
+    ("competition", _competition),
 )
 """Names, and small calls that compile; each kernel is compiled for one kind of arguments only."""
 
