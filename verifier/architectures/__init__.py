@@ -1,0 +1,1 @@
+"""Recordings of architectures: every node judged by its own spec, while others act."""
