@@ -235,7 +235,7 @@ def _warn_of_unused(
     ]
     if expressions.judge_when is not None:
         trees.append(expressions.judge_when)
-    used = read.union(*map(names_in, trees))
+    used = read.union(*map(names_in, trees), spec.realizes)
     sections: tuple[tuple[str, Iterable[str]], ...] = (
         ("control", spec.control),
         ("constants", spec.constants),

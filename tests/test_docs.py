@@ -72,7 +72,7 @@ def whole(text: str) -> dict[str, object]:
 def beside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with the files that the page shows."""
     monkeypatch.chdir(tmp_path)
-    for kind in ("csv", "python"):
+    for kind in ("csv", "python", "yaml"):
         for _, mark, text in blocks(kind):
             if mark.startswith("file: "):
                 (tmp_path / mark.removeprefix("file: ")).write_text(text, encoding="utf-8")

@@ -1,7 +1,7 @@
 """Time: what is too slow for the field that it serves, and the step that all times share."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, final
@@ -10,6 +10,7 @@ import numpy as np
 
 from compiler.architecture.parts import Part, Parts, is_read
 from compiler.findings import Findings
+from runtime.architecture import Choice, Input
 from runtime.arrays import Array
 from runtime.flow import Flow, Source, flow_of, in_one_mode, jacobian
 from runtime.program import Kind, Program
@@ -37,7 +38,12 @@ class Fastest:
     where: dict[str, float]
 
 
-def check_timing(parts: Parts, findings: Findings) -> None:
+def check_timing(
+    inputs: Mapping[str, tuple[Input, ...]],
+    choices: Mapping[str, tuple[Choice, ...]],
+    parts: Parts,
+    findings: Findings,
+) -> None:
     """Findings for nodes that are too slow, and for times that no common step divides."""
     for part in parts.nodes.values():
         if part.program is None:
@@ -45,7 +51,8 @@ def check_timing(parts: Parts, findings: Findings) -> None:
         if part.program.field.is_map:
             _check_map(part, part.program, findings)
         else:
-            _check_lag(part, part.program, findings)
+            fastest = fastest_of(part.program, reach_of(part, inputs, choices, parts))
+            _check_lag(part, part.program, fastest, findings)
     _check_common_step(parts, findings)
 
 
@@ -57,8 +64,7 @@ def _check_map(part: Part, program: Program, findings: Findings) -> None:
         findings.error("S351", (*part.path, "period"), message, remedy)
 
 
-def _check_lag(part: Part, program: Program, findings: Findings) -> None:
-    fastest = fastest_of(program, part)
+def _check_lag(part: Part, program: Program, fastest: Fastest, findings: Findings) -> None:
     if fastest.rate * part.lag <= MOST:
         return
     units = {variable.name: variable.unit for variable in program.states}
@@ -80,11 +86,11 @@ def _check_lag(part: Part, program: Program, findings: Findings) -> None:
     findings.error("S353", (*part.path, "period"), message, f"{remedy}, or lower its gains")
 
 
-def fastest_of(program: Program, part: Part | None = None) -> Fastest:
+def fastest_of(program: Program, reach: Mapping[str, tuple[float, float]]) -> Fastest:
     """The largest eigenvalue of the field where it feeds back, over its domain.
 
-    Over the states that are sensed as well as driven; controls at the values that they may have
-    in the architecture. Sampled at points that do not depend on anything but the program.
+    Over the states that are sensed as well as driven; controls where they may `reach` (in
+    the architecture). Sampled at points that do not depend on anything but the program.
     """
     back = [
         i
@@ -94,7 +100,7 @@ def fastest_of(program: Program, part: Part | None = None) -> Fastest:
     flow = None if not back else _flow(program)
     if flow is None:
         return Fastest(0.0, {})
-    x, u = _points(program, part)
+    x, u = _points(program, reach)
     with np.errstate(all="ignore"):
         slopes = jacobian(in_one_mode(flow), x, u)[:, back][:, :, back]
     known = np.all(np.isfinite(slopes), axis=(1, 2))
@@ -115,7 +121,7 @@ def _flow(program: Program) -> Flow | None:
     return None if program.field.formula is None else flow_of(program, Source.FORMULA)
 
 
-def _points(program: Program, part: Part | None) -> tuple[Array, Array]:
+def _points(program: Program, reach: Mapping[str, tuple[float, float]]) -> tuple[Array, Array]:
     """States (N, n) and controls (N, p) all over their domains, corners of the controls too."""
     random = np.random.Generator(np.random.Philox(SEED))
     states = np.column_stack(
@@ -126,16 +132,38 @@ def _points(program: Program, part: Part | None) -> tuple[Array, Array]:
             for s in program.states
         ]
     )
-    wires = part.spec.set if part is not None else {}
     columns = []
     for control in program.controls:
-        low, high = control.low, control.high
-        wire = wires.get(control.name)
-        if wire is None or wire.source is None:
-            low = high = control.default
+        low, high = reach.get(control.name, (control.low, control.high))
         columns.append(random.uniform(low, high, POINTS) if low < high else np.full(POINTS, low))
     controls = np.column_stack(columns) if columns else np.empty((POINTS, 0))
     return states, controls
+
+
+def reach_of(
+    part: Part,
+    inputs: Mapping[str, tuple[Input, ...]],
+    choices: Mapping[str, tuple[Choice, ...]],
+    parts: Parts,
+) -> dict[str, tuple[float, float]]:
+    """For each control of a node where its values lie: set once, by a choice, or by a signal."""
+    sets = [
+        (one.entry, one.value)
+        for many in choices.values()
+        for choice in many
+        for one in choice.sets
+        if one.node == parts.index(part.name)
+    ]
+    entries = {entry.name: entry for entry in part.controls}
+    found = {}
+    for wire in inputs[part.name]:
+        entry = entries.get(wire.entry)
+        if entry is not None and wire.signal < 0:
+            values = [wire.value, *(value for name, value in sets if name == wire.entry)]
+            found[wire.entry] = (min(values), max(values))
+        elif entry is not None:
+            found[wire.entry] = (entry.low, entry.high)
+    return found
 
 
 def _rounded(value: float) -> float:
