@@ -205,9 +205,9 @@ def test_odometry_without_slip_is_where_the_robot_is_seen_from_its_start() -> No
 
     x, y, heading, *_ = said(sim)
     true_x, true_y, true_heading = sim.poses()[0].tolist()
-    assert 2.0 + x * math.cos(0.8) - y * math.sin(0.8) == pytest.approx(true_x, abs=4e-3)
-    assert 1.0 + x * math.sin(0.8) + y * math.cos(0.8) == pytest.approx(true_y, abs=4e-3)
-    assert heading == pytest.approx(math.remainder(true_heading - 0.8, math.tau), abs=4e-3)
+    assert 2.0 + x * math.cos(0.8) - y * math.sin(0.8) == pytest.approx(true_x, abs=1e-5)
+    assert 1.0 + x * math.sin(0.8) + y * math.cos(0.8) == pytest.approx(true_y, abs=1e-5)
+    assert heading == pytest.approx(math.remainder(true_heading - 0.8, math.tau), abs=1e-5)
 
 
 def test_wheels_that_slip_are_believed() -> None:
@@ -240,8 +240,8 @@ def test_a_holonomic_body_counts_its_steps_in_all_directions() -> None:
     x, y, heading, speed, turn = said(sim)
     true = sim.poses()[0]
     assert (speed, turn) == pytest.approx((math.hypot(0.1, 0.2), 0.4))
-    assert math.hypot(x, y) == pytest.approx(math.hypot(*(true[:2] - 1.0)), abs=3e-3)
-    assert heading == pytest.approx(true[2] - 0.3, abs=3e-3)
+    assert math.hypot(x, y) == pytest.approx(math.hypot(*(true[:2] - 1.0)), abs=1e-4)
+    assert heading == pytest.approx(true[2] - 0.3, abs=1e-4)
 
 
 def test_asking_changes_nothing() -> None:
