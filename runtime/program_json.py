@@ -62,6 +62,20 @@ def from_json(content: bytes, load: Load) -> Program:
     return program
 
 
+def to_plain(kind: Any, value: Any) -> Any:
+    """What JSON can say of a value without tables, by the type `kind`."""
+    return _plain(kind, value, iter(()))
+
+
+def from_plain(kind: Any, value: Any, at: str, load: Load) -> Any:
+    """The value of type `kind` that `to_plain` wrote; `at` names it in messages.
+
+    Raises:
+        ArtifactError: it is not exactly what would be written.
+    """
+    return _typed(kind, value, at, load)
+
+
 def _plain(kind: Any, value: Any, members: Iterator[str]) -> Any:
     """What JSON can say of a value of the type `kind`."""
     if isinstance(value, np.ndarray):

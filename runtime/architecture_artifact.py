@@ -1,0 +1,163 @@
+"""The artifact of an architecture: one file with its wiring, its body and its behaviors' artifacts.
+
+`architecture.json` and for each behavior `behaviors/N.specc`, the very artifact that it has by
+itself, in a container of which every byte is determined and checked (`runtime.container`). It loads
+without the compiler.
+"""
+
+import dataclasses
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final, final
+
+from runtime import artifact
+from runtime.arbiter import Arbiter
+from runtime.architecture import Architecture
+from runtime.arrays import Array
+from runtime.container import ArtifactError, Member, join, split
+from runtime.program import Program
+from runtime.program_json import from_plain, to_plain
+from runtime.world.model import Body
+
+FORMAT: Final = 1
+"""The version of what stands in `architecture.json`; a change of meaning raises it."""
+DOCUMENT: Final = "architecture.json"
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Wired:
+    """What stands in the document: an architecture whose programs are members, and its body.
+
+    plans: for each arbiter the member that holds its plan, -1 for none.
+    """
+
+    architecture: Architecture
+    body: Body
+    plans: tuple[int, ...]
+
+
+def to_bytes(architecture: Architecture, body: Body) -> bytes:
+    """The artifact of an architecture and the body that it drives.
+
+    Raises:
+        ArtifactError: they do not fit together, or are too large.
+    """
+    for fault in faults(architecture, body):
+        raise ArtifactError(f"'{architecture.name}' does not fit together: {fault}")
+    programs = list(architecture.programs)
+    plans = []
+    for arbiter in architecture.arbiters:
+        plans.append(-1 if arbiter.plan is None else len(programs))
+        programs += [] if arbiter.plan is None else [arbiter.plan]
+    arbiters = tuple(dataclasses.replace(one, plan=None) for one in architecture.arbiters)
+    bare = dataclasses.replace(architecture, programs=(), arbiters=arbiters)
+    members = [Member(DOCUMENT, memoryview(_document(Wired(bare, body, tuple(plans)))))]
+    members += [
+        Member(_name(i), memoryview(artifact.to_bytes(program)))
+        for i, program in enumerate(programs)
+    ]
+    return join(members)
+
+
+def from_bytes(data: bytes) -> tuple[Architecture, Body]:
+    """The architecture of an artifact, and its body.
+
+    Raises:
+        ArtifactError: the data was cut or altered, or is no artifact of this version.
+    """
+    members = split(memoryview(data))
+    names = [DOCUMENT, *(_name(i) for i in range(len(members) - 1))]
+    if [name for name, _ in members] != names:
+        raise ArtifactError("the artifact has other parts than an architecture and its behaviors")
+    wired = _read(bytes(members[0].content))
+    programs = [artifact.from_bytes(bytes(member.content)) for member in members[1:]]
+    arbiters = tuple(_planned(wired, programs))
+    plans = [place for place in wired.plans if place >= 0]
+    count = len(programs) - len(plans)
+    if plans != list(range(count, len(programs))):
+        raise ArtifactError("the artifact was not written by specc")
+    architecture = dataclasses.replace(
+        wired.architecture, programs=tuple(programs[:count]), arbiters=arbiters
+    )
+    # One architecture, one artifact: nothing may stand in it that would not be written.
+    if to_bytes(architecture, wired.body) != data:
+        raise ArtifactError("the artifact was not written by specc")
+    return architecture, wired.body
+
+
+def is_architecture(data: bytes) -> bool:
+    """Whether a container holds an architecture rather than a behavior."""
+    return DOCUMENT in [name for name, _ in split(memoryview(data))]
+
+
+def faults(architecture: Architecture, body: Body) -> Iterator[str]:
+    """What in an architecture points to what there is not, each in a sentence."""
+    signals, nodes = len(architecture.board), len(architecture.nodes)
+    if architecture.body != body.name:
+        yield f"it drives '{architecture.body}', not '{body.name}'"
+    if sorted(architecture.order) != list(range(nodes)):
+        yield "its order does not name each node once"
+    for node in architecture.nodes:
+        places = [(wire.signal, signals) for wire in node.inputs if wire.signal >= 0]
+        places += [(place, signals) for place in node.outputs]
+        places += [(command.channel, len(architecture.channels)) for command in node.commands]
+        places += [(place, nodes) for choice in node.choices for place in choice.acts]
+        places += [(one.node, nodes) for choice in node.choices for one in choice.sets]
+        places += [(place, nodes) for place in node.replaces]
+        places += [(node.behavior, len(architecture.programs))] if node.behavior >= 0 else []
+        places += [(node.arbiter, len(architecture.arbiters))] if node.arbiter >= 0 else []
+        if any(not 0 <= place < count for place, count in places):
+            yield f"the node '{node.name}' points to what there is not"
+        if not (node.period > 0.0 and node.response_time >= 0.0):
+            yield f"the node '{node.name}' has no period"
+    for channel in architecture.channels:
+        resolution = channel.resolution
+        if any(not 0 <= place < nodes for place in resolution.nodes):
+            yield f"the channel '{channel.name}' is resolved between nodes that there are not"
+        if not -1 <= resolution.arbiter < nodes:
+            yield f"the channel '{channel.name}' is resolved by a node that there is not"
+
+
+def _name(place: int) -> str:
+    return f"behaviors/{place}.specc"
+
+
+def _document(wired: Wired) -> bytes:
+    document = {"format": FORMAT, "wired": to_plain(Wired, wired)}
+    try:
+        text = json.dumps(document, sort_keys=True, allow_nan=False, ensure_ascii=False, indent=1)
+        return (text + "\n").encode()
+    except ValueError as problem:
+        raise ArtifactError(f"the architecture cannot be written: {problem}") from problem
+
+
+def _read(content: bytes) -> Wired:
+    try:
+        document = json.loads(content.decode())
+    except (ValueError, RecursionError) as problem:
+        raise ArtifactError(f"{DOCUMENT} is not JSON: {problem}") from problem
+    if not isinstance(document, dict) or set(document) != {"format", "wired"}:
+        raise ArtifactError(f"{DOCUMENT} holds no architecture")
+    if document["format"] != FORMAT:
+        raise ArtifactError(
+            f"the artifact has format {document['format']!r}, this version reads {FORMAT}; "
+            "compile the spec again"
+        )
+    wired: Wired = from_plain(Wired, document["wired"], "architecture", _no_tables)
+    return wired
+
+
+def _no_tables(name: str, _shape: tuple[int, ...]) -> Array:
+    raise ArtifactError(f"the document names a table '{name}', which belongs to a behavior")
+
+
+def _planned(wired: Wired, programs: list[Program]) -> Iterator[Arbiter]:
+    if len(wired.plans) != len(wired.architecture.arbiters):
+        raise ArtifactError("the artifact does not say which arbiters have plans")
+    for arbiter, place in zip(wired.architecture.arbiters, wired.plans, strict=True):
+        if place >= len(programs):
+            raise ArtifactError(f"the artifact lacks the plan of '{arbiter.name}'")
+        plan: Any = programs[place] if place >= 0 else None
+        yield dataclasses.replace(arbiter, plan=plan)
