@@ -3,18 +3,14 @@
 This is the only place where code that a spec's author wrote is run, and only `compile` comes here.
 """
 
-import importlib
-import importlib.util
-import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
 from compiler.tabulate import Sampler
 from runtime.arrays import Array
+from runtime.user_code import load_module
 
 
 class ModuleError(Exception):
@@ -52,7 +48,7 @@ def _found(call: str, beside: Path) -> Callable[..., object]:
     if not module_name or not name:
         raise ModuleError(f"'{call}' is not package.module:function", "write `call: spiral:field`")
     try:
-        module = _loaded(module_name, beside)
+        module = load_module(module_name, beside)
     except (Exception, SystemExit) as error:
         raise ModuleError(
             f"{module_name} can't be imported ({type(error).__name__}: {error})",
@@ -64,32 +60,6 @@ def _found(call: str, beside: Path) -> Callable[..., object]:
             f"{module_name} has no function {name}", f"define `def {name}(...)` there"
         )
     return function
-
-
-def _loaded(name: str, beside: Path) -> ModuleType:
-    """The module from its file beside the spec, read anew; else the installed one."""
-    path = beside / Path(*name.split(".")).with_suffix(".py")
-    if not path.is_file():
-        return importlib.import_module(name)
-    spec = importlib.util.spec_from_file_location(f"_of_a_spec_{name.replace('.', '_')}", path)
-    assert spec is not None, "a .py file has a loader"
-    assert spec.loader is not None, "a .py file has a loader"
-    module = importlib.util.module_from_spec(spec)
-    with _importable(beside):
-        spec.loader.exec_module(module)
-    return module
-
-
-@contextmanager
-def _importable(folder: Path) -> Iterator[None]:
-    """Within it the modules beside the spec can import one another."""
-    before = list(sys.path)
-    sys.path.insert(0, str(folder))
-    importlib.invalidate_caches()
-    try:
-        yield
-    finally:
-        sys.path[:] = before
 
 
 def _checked(call: str, answer: object, driven: tuple[str, ...], count: int) -> Array:

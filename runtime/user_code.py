@@ -27,7 +27,7 @@ def load_callee(text: str, beside: Path) -> Callee:
     """
     module_name, _, name = text.partition(":")
     try:
-        module = _loaded(module_name, beside)
+        module = load_module(module_name, beside)
     except (Exception, SystemExit) as error:
         raise UserCodeError(
             f"{module_name} can't be imported ({type(error).__name__}: {error}); it is looked for "
@@ -51,8 +51,12 @@ def call(text: str, callee: Callee, *arguments: object) -> object:
         raise UserCodeError(f"{text} raised {type(error).__name__}: {error}") from error
 
 
-def _loaded(name: str, beside: Path) -> ModuleType:
-    """The module from its file beside the spec, read anew; else the installed one."""
+def load_module(name: str, beside: Path) -> ModuleType:
+    """The module from its file beside the spec, read anew; else the installed one.
+
+    Raises:
+        Exception: whatever it raises while it is imported.
+    """
     path = beside / Path(*name.split(".")).with_suffix(".py")
     if not path.is_file():
         return importlib.import_module(name)

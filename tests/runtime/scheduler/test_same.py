@@ -1,8 +1,10 @@
 """The same run whatever the machine does meanwhile: hashes, processes, load (principles 2e-2g)."""
 
+import gc
 import subprocess
 import sys
 import time
+import types
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -142,3 +144,28 @@ def test_the_hash_is_of_the_state_and_not_of_the_way_there(seed: int) -> None:
         two.run(10)
 
     assert one.state_hash() == two.state_hash()
+
+
+def reachable(root: object) -> list[object]:
+    """Everything that can be got at from an object by following what it holds; no code."""
+    code = (type, types.ModuleType, types.FunctionType, types.BuiltinFunctionType)
+    seen: dict[int, object] = {}
+    waiting = [root]
+    while waiting:
+        thing = waiting.pop()
+        if id(thing) in seen or isinstance(thing, code):
+            continue
+        seen[id(thing)] = thing
+        waiting += gc.get_referents(thing)
+    return list(seen.values())
+
+
+def test_from_a_node_no_part_of_the_world_can_be_reached() -> None:
+    scheduler = busy(1)
+    scheduler.run(20)
+    worlds = ("runtime.world", Plane.__module__)
+
+    for node in scheduler.agents[0].nodes:
+        found = {type(thing).__module__ for thing in reachable(node)}
+        assert not {module for module in found if module.startswith(worlds)}
+    assert {type(thing).__module__ for thing in reachable(scheduler)} & {Plane.__module__}
