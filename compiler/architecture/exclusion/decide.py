@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, final
 
-from compiler.architecture.exclusion.answer import Answer, Proof, Undecided
+from compiler.architecture.exclusion.answer import Answer, Proof, Undecided, Witness
 from compiler.architecture.exclusion.conditions import Sampled, has_memory
 from compiler.architecture.exclusion.formula import Formula, both, either, holds
 from compiler.architecture.exclusion.overlap import Instant, Timing, instants, timing_of
@@ -32,8 +32,30 @@ Picks: TypeAlias = Mapping[int, int]
 
 def decide(question: Question) -> Answer:
     """A proof that the two never act at once, a state in which they do, or what is open."""
+    answer = _decided(question)
+    if isinstance(answer, Witness) and not answer.help:
+        return replace(answer, help=_mend(question))
+    return answer
+
+
+def _decided(question: Question) -> Answer:
     ways = list(_ways(question))
     return _searched(question, ways) if ways else Proof(_structure(question))
+
+
+def _mend(question: Question) -> str:
+    """What would do: the same times, if that is proved; else what always helps."""
+    first = question.deciders[0]
+    together = tuple(
+        replace(one, period=first.period, response_time=first.response_time)
+        for one in question.deciders
+    )
+    differs = together != question.deciders
+    if differs and isinstance(_decided(replace(question, deciders=together)), Proof):
+        return APART
+    if any(question.deciders[d].how is How.ALL for d, _ in _outcomes(question)):
+        return "resolve it by `priority`, where the higher layer has its way"
+    return "write conditions that never hold together, or let one arbiter choose by `rules`"
 
 
 def _searched(question: Question, ways: list[Picks]) -> Answer:
@@ -47,8 +69,7 @@ def _searched(question: Question, ways: list[Picks]) -> Answer:
             budget = BUDGET if open_ is None else FURTHER
             answer = solve(case.formula(), case.variables(), budget)
             if isinstance(answer, Found):
-                apart = case.witness(answer, needs_one_instant=boxes > 0)
-                return unknown or _from_memory(question, timing) or apart
+                return unknown or _from_memory(question, timing) or case.witness(answer)
             if isinstance(answer, Open):
                 open_ = open_ or case.left(answer)
             else:
@@ -173,7 +194,7 @@ class _Case:
             "or let one arbiter choose by `rules`",
         )
 
-    def witness(self, found: Found, *, needs_one_instant: bool) -> Answer:
+    def witness(self, found: Found) -> Witness:
         """The state, in words."""
         decisions = []
         for place, outcome in sorted(self._decided(found)):
@@ -187,8 +208,7 @@ class _Case:
             decisions.append(Decision(place, outcome, sampled.stamp, values))
         ticks = [(one.sampled, one.decider, one.values) for one in decisions]
         run = moments(self.question, self.timing, ticks)
-        answer = told(self.question, self.timing, self.instant.at, decisions, run)
-        return replace(answer, help=APART) if needs_one_instant and not answer.help else answer
+        return told(self.question, self.timing, self.instant.at, decisions, run)
 
     def _decided(self, found: Found) -> set[Outcome]:
         """Of each need one outcome that holds."""
@@ -219,6 +239,6 @@ class _Case:
 
 
 APART: Final = (
-    "their conditions exclude each other only where both are sampled at one instant: give them the "
-    "same period and response_time, or let one arbiter choose"
+    "give all that decides here the same period and response_time, which would do, "
+    "or let one arbiter choose"
 )

@@ -310,8 +310,8 @@ def round_between(low: float, high: float, unit: float = 1.0) -> float:
     middle = 0.5 * low + 0.5 * high
     size = (high - low) / unit
     if size <= NARROW * abs(middle / unit):
-        near = (round(middle / unit, digits) * unit for digits in range(16))
-        return next((value for value in near if low <= value <= high), middle)
+        short = (round(middle / unit, digits) * unit for digits in range(16))
+        return next((value for value in short if low <= value <= high), middle)
     if size > 0.0:
         first = -math.floor(math.log10(size))
         for digits in range(first, first + 3):

@@ -11,7 +11,7 @@ from compiler.architecture.exclusion.question import Decider, Entry, How, Questi
 from compiler.architecture.exclusion.search import round_between
 from runtime.code import Code
 from spec_schema.expressions.rewrite import names_in
-from spec_schema.wording import number
+from spec_schema.wording import listed, number
 
 
 @final
@@ -92,11 +92,16 @@ def _sample(
             if entry.name in used and entry.name in one.values and entry.signal >= 0:
                 reading = _reading(question, entry, one.values[entry.name])
                 readings[reading.name] = reading
-        effects.append(_effect(timing, at, one, decider))
+        effects.append(_effect(timing, at, one, _all_of(one, decisions), decider))
     return Sample(timing.seconds(time), tuple(readings.values()), tuple(dict.fromkeys(effects)))
 
 
-def _effect(timing: Timing, at: int, one: Decision, decider: Decider) -> str:
+def _all_of(one: Decision, decisions: list[Decision]) -> list[int]:
+    """The outcomes that the same decision has."""
+    return [o.outcome for o in decisions if (o.decider, o.begins) == (one.decider, one.begins)]
+
+
+def _effect(timing: Timing, at: int, one: Decision, outcomes: list[int], decider: Decider) -> str:
     if one.begins:
         return f"where {decider.name} begins to hold {decider.outcomes[one.outcome]}"
     starts = one.sampled + timing.responses[one.decider]
@@ -104,17 +109,18 @@ def _effect(timing: Timing, at: int, one: Decision, decider: Decider) -> str:
     when = f"until {number(timing.seconds(ends))} s"
     if starts == at:
         when = f"from {number(timing.seconds(starts))} s"
-    return f"{said(decider, one.outcome)} {when}"
+    return f"{said(decider, outcomes)} {when}"
 
 
-def said(decider: Decider, outcome: int) -> str:
+def said(decider: Decider, outcomes: list[int]) -> str:
     """What is decided, in words."""
+    names = listed([decider.outcomes[outcome] for outcome in outcomes], last="and")
     match decider.how:
         case How.CONDITION:
             return f"{decider.name} acts"
         case How.FIRST | How.ONE:
-            return f"{decider.name} chooses {decider.outcomes[outcome]}"
-    return f"{decider.name} lets {decider.outcomes[outcome]} hold"
+            return f"{decider.name} chooses {names}"
+    return f"{decider.name} lets {names} hold"
 
 
 def _reading(question: Question, entry: Entry, value: float) -> Reading:

@@ -27,6 +27,8 @@ PLANE = {"x": Variable(-3.0, 3.0), "y": Variable(-3.0, 3.0)}
 EMPTY = [
     ("c < near", "c >= near", WIDE),
     ("c < near and near < 0.5", "c > 0.5", WIDE),
+    ("a <= b and b < d", "d <= a", UNIT_CUBE),
+    ("a < b and b <= d", "d <= a", UNIT_CUBE),
     ("c <= near", "c > near + 0.1", WIDE),
     ("c - near > 0", "c <= near", WIDE),
     ("not (c >= near or near >= 0.9)", "c >= near", WIDE),
