@@ -9,7 +9,8 @@ from dataclasses import replace
 
 from runtime.program import Program
 from verifier.diagnosis.diagnose import diagnose
-from verifier.fidelity.stretches.needs import parts_of
+from verifier.fidelity.judging.stuck import with_stuck
+from verifier.fidelity.stretches.needs import needs_of, parts_of
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.limits.limits import limits_of
 from verifier.report.advice import advised
@@ -50,12 +51,12 @@ def explain(
 ) -> Examination:
     """What `examine` does, with the `judgement` of `trace` at hand."""
     report, study = judgement.report, judgement.study
-    origins = origins_of(program)
+    origins, needs = origins_of(program), needs_of(program, trace)
     if only_verdict:
-        return Examination(report, origins=origins)
+        return Examination(with_stuck(report, needs), origins=origins)
     tell("why it departs")
     diagnosis = diagnose(program, trace, study, report)
-    advisory = advised(report, diagnosis, judgement.switching)
+    advisory = with_stuck(advised(report, diagnosis, judgement.switching), needs)
     tell("features of the field")
     features = compare_features(program, trace, study)
     partial = Examination(advisory, judgement.switching, diagnosis, None, features, None, origins)
