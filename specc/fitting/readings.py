@@ -6,8 +6,8 @@ from typing import Final
 
 from runtime.program import Binding, Program
 from specc.fitting.aims import Aim, AnyAim, UnitAim
-from verifier.diagnosis.candidates.slips import slips_of, unit_read
 from verifier.fidelity.stretches.needs import parts_of
+from verifier.mixed_units import alternatives, unit_read
 from verifier.report.diagnosis import Candidate, CandidateKind, ParameterKind, Refitted
 
 OF_INPUTS: Final = (ParameterKind.INPUT_GAIN, ParameterKind.INPUT_OFFSET)
@@ -80,7 +80,7 @@ def _mended(
         scale = -binding.scale
         return Aim(path, f"scale of {name}", scale, 0.0, "1", 1.0, candidate.sentence)
     own = parts_of(program)[name].unit
-    slips = slips_of(unit_read(own, binding))
+    slips = alternatives(unit_read(own, binding))
     slip = next((each for each in slips if candidate.label.startswith(each.words)), None)
     if slip is not None and slip.written:
         path = ("trace", name, "unit")

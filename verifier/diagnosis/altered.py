@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias, final
 
 from runtime.program import Unit
-from verifier.diagnosis.candidates.slips import Slip
 from verifier.diagnosis.courses import Course
+from verifier.mixed_units import Slip
 from verifier.report.diagnosis import CandidateKind, ParameterKind
 
 

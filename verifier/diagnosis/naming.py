@@ -3,7 +3,7 @@
 from typing import Final
 
 from verifier.diagnosis.altered import Effect, Values
-from verifier.diagnosis.candidates.slips import slip_by
+from verifier.mixed_units import slip_by
 from verifier.report.diagnosis import CandidateKind, ParameterKind
 from verifier.report.wording import listed
 

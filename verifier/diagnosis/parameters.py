@@ -7,10 +7,10 @@ import numpy as np
 
 from runtime.program import Binding, Kind, Program, State, Unit
 from verifier.diagnosis.altered import Altered, Effect, Number, Values
-from verifier.diagnosis.candidates.slips import Slip, slips_of, unit_read
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.loosened import ONE, TIME_SCALE, gain_of, offset_of
 from verifier.fidelity.stretches.needs import Input, Needs, names_read, parts_of
+from verifier.mixed_units import Slip, alternatives, unit_read
 from verifier.report.diagnosis import CandidateKind, ParameterKind
 
 NUDGE: Final = 1e-4
@@ -207,7 +207,7 @@ def _of_inputs(program: Program, needs: Needs, bindings: dict[str, Binding]) -> 
             float(np.ptp(given.series.values)),
             "" if binding is None else binding.origin,
         )
-        slips = slips_of(unit_read(units[given.name], binding))
+        slips = alternatives(unit_read(units[given.name], binding))
         lowest = 0.0 if given.low >= 0.0 or given.high <= 0.0 else -np.inf
         found += [replace(gain, low=lowest, slips=slips), offset]
     return found
@@ -236,7 +236,7 @@ def _of_rate(program: Program, state: State) -> list[Parameter]:
     unit = state.unit if program.field.is_map else per_second
     width = 0.1 * (state.high - state.low)
     gain, offset = _pair(kinds, state.name, unit, width, program.field.origin)
-    return [replace(gain, slips=tuple(s for s in slips_of(state.unit) if s.is_classic)), offset]
+    return [replace(gain, slips=tuple(s for s in alternatives(state.unit) if s.is_classic)), offset]
 
 
 def _time_scale(program: Program) -> Parameter:
@@ -250,7 +250,7 @@ def _of_sensor(state: State, binding: Binding | None) -> list[Parameter]:
     origin = state.origin if binding is None else binding.origin
     width = 0.1 * (state.high - state.low)
     scale, offset = _pair(kinds, state.name, state.unit, width, origin)
-    slips = slips_of(unit_read(state.unit, binding))
+    slips = alternatives(unit_read(state.unit, binding))
     return [offset] if state.kind is Kind.PERIODIC else [replace(scale, slips=slips), offset]
 
 

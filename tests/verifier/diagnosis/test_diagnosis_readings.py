@@ -11,7 +11,7 @@ from tests.study import planted
 from tests.study.diagnosis import DRIVE, diagnosed, program_of
 from tests.study.planted import Drive
 from tests.study.robots import BASE, SHUTTLE, drive, measured
-from verifier.diagnosis.candidates.slips import slip_by, slips_of
+from verifier.mixed_units import alternatives, slip_by
 from verifier.report.diagnosis import CandidateKind, Diagnosis
 from verifier.traces.trace import Trace
 
@@ -104,13 +104,13 @@ def test_two_modes_in_each_other_s_place_are_named() -> None:
 )
 def test_a_slip_mends_what_was_read(unit: Unit, words: str, number: float, si: float) -> None:
     """number: the SI value that was read in the wrong unit."""
-    (slip,) = (each for each in slips_of(unit) if each.words == words)
+    (slip,) = (each for each in alternatives(unit) if each.words == words)
 
     assert slip.factor * number + slip.offset == pytest.approx(si)
 
 
 def test_a_gain_that_is_near_no_unit_is_none() -> None:
-    slips = slips_of(Unit("m/s", 1.0))
+    slips = alternatives(Unit("m/s", 1.0))
 
     assert slip_by(0.2778, slips) is not None
     assert slip_by(0.3, slips) is None

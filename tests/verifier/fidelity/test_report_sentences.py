@@ -240,7 +240,16 @@ def test_of_several_recordings_the_one_outside_is_named(scenes: ModuleType) -> N
     assert any(reason.startswith("b.csv: heading lies outside") for reason in report.reasons)
 
 
-def test_a_temperature_in_degrees_celsius_wants_an_offset(scenes: ModuleType) -> None:
+@pytest.mark.parametrize(
+    ("factor", "zero", "unit", "entry"),
+    [
+        (1.0, 273.15, "Celsius", "offset: 273.15 K"),
+        (5.0 / 9.0, 255.372, "Fahrenheit", "scale: 0.555556, offset: 255.372 K"),
+    ],
+)
+def test_a_temperature_with_another_zero_wants_an_offset(
+    scenes: ModuleType, factor: float, zero: float, unit: str, entry: str
+) -> None:
     spec = scenes.program(
         (scenes.state("room", 280.0, 320.0, unit=KELVIN),),
         (),
@@ -249,13 +258,14 @@ def test_a_temperature_in_degrees_celsius_wants_an_offset(scenes: ModuleType) ->
     )
     spec = replace(spec, bindings=(replace(spec.bindings[0], unit=KELVIN, path="T room"),))
     times = np.arange(0.0, 60.0, 0.1)
-    drive = scenes.trace(scenes.series("room", times, 20.0 + 5.0 * np.exp(-0.1 * times)))
+    kelvin = 293.15 + 5.0 * np.exp(-0.1 * times)
+    drive = scenes.trace(scenes.series("room", times, (kelvin - zero) / factor))
 
     report = verify(spec, drive)
 
-    assert "it reads 20 to 24.7 K, the domain is 280 to 320 K" in report.reasons[0]
-    assert "read in degrees Celsius" in report.reasons[0]
-    assert "`room: {path: 'T room', offset: 273.15 K}`" in report.advice[0]
+    assert "K, the domain is 280 to 320 K" in report.reasons[0]
+    assert f"read in degrees {unit}, it would lie inside" in report.reasons[0]
+    assert f"`room: {{path: 'T room', {entry}}}`" in report.advice[0]
 
 
 # --- nothing to compare

@@ -13,13 +13,11 @@ import numpy as np
 
 from runtime.arrays import Array
 from runtime.program import Kind, Program, Unit
-from verifier.diagnosis.candidates.slips import Slip, slips_of, unit_read
 from verifier.fidelity.stretches.needs import Needs, parts_of
+from verifier.mixed_units import PLAUSIBLE, Slip, alternatives, unit_read
 from verifier.report.diagnosis import CandidateKind
 from verifier.traces.trace import Trace
 
-PLAUSIBLE: Final = 0.9
-"""At least this share of the samples lies within the domain."""
 FEW: Final = 4
 """Of so many values of a discrete variable, at most, pairs are exchanged."""
 
@@ -79,7 +77,7 @@ def _in_units(
     units = read_units(program)
     shared: dict[tuple[str, float], list[tuple[str, Slip]]] = {}
     for name in names:
-        for slip in slips_of(units[name]):
+        for slip in alternatives(units[name]):
             if slip.is_classic or name in outside:
                 shared.setdefault((slip.words, slip.factor), []).append((name, slip))
     found = []

@@ -12,26 +12,17 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array
-from runtime.program import Binding, Control, Program, State, Unit
-from spec_schema.units import UnitFault, parse_unit
+from runtime.program import Binding, Control, Program, State
 from verifier.fidelity.stretches.needs import Needs
 from verifier.fidelity.stretches.segments import inside_domains
 from verifier.fidelity.stretches.spans import intersect, length, spans_of
+from verifier.mixed_units import PLAUSIBLE, Slip, alternatives, unit_read
 from verifier.report.wording import percent, span
 
 MOSTLY: Final = 0.5
 """Worth a word from this share of the trace on."""
-PLAUSIBLE: Final = 0.9
-"""A unit is suggested that puts this share of the samples into the domain."""
 USUAL: Final = (0.01, 0.99)
 """What is called seen lies between these quantiles: single outliers are no range."""
-ANGLES: Final[tuple[str, ...]] = ("deg", "rad", "mrad", "deg/s", "rpm", "rad/s")
-UNITS: Final[tuple[str, ...]] = (
-    *("mm", "cm", "km", "m", "km/h", "mm/s", "cm/s", "m/s", "ms", "us", "s", "g", "kg", "%", "1"),
-    *("mA", "A", "mV", "V", "hPa", "kPa", "bar", "Pa", "mbar", "kW", "W", "l", "m^3"),
-)
-"""In which sensors tell what is no angle."""
-CELSIUS: Final = 273.15
 
 
 @final
@@ -81,24 +72,22 @@ def _other_readings(
     part: State | Control, binding: Binding, values: Array
 ) -> Iterator[tuple[str, str, Array]]:
     """The same log in other units: their name, what to write, and what would be read."""
-    logged = (values - binding.offset) / binding.unit.scale
-    for text in _units_like(part.unit):
-        scale = parse_unit(text).scale
-        if scale != binding.unit.scale:
-            yield text, f"unit: {text}", logged * scale + binding.offset
-    if part.unit.text == "K":
-        yield "degrees Celsius", "offset: 273.15 K", logged + CELSIUS
+    for slip in alternatives(unit_read(part.unit, binding)):
+        entry = _entry(slip, binding)
+        if entry:
+            read = slip.factor * (values - binding.offset) + binding.offset + slip.offset
+            yield slip.written or f"degrees {slip.words.split()[0]}", entry, read
 
 
-def _units_like(unit: Unit) -> list[str]:
-    """Units in which sensors may tell a quantity of this unit; angles are no ratios."""
-    text = unit.text or "1"
-    tried = ANGLES if re.search(r"rad|deg|rpm|turn", text) else UNITS
-    try:
-        dimension = parse_unit(text).dimension
-    except UnitFault:
-        return []
-    return [each for each in tried if parse_unit(each).dimension == dimension]
+def _entry(slip: Slip, binding: Binding) -> str:
+    """What to write; empty where neither a unit nor another zero mends it."""
+    if slip.written:
+        return f"unit: {slip.written}"
+    if slip.offset == 0.0:
+        return ""
+    scale = slip.factor * binding.scale
+    zero = f"offset: {binding.offset + slip.offset:.6g} K"
+    return zero if scale == 1.0 else f"scale: {scale:.6g}, {zero}"
 
 
 def _to_write(binding: Binding, entry: str) -> str:
