@@ -1,13 +1,14 @@
 """A condition as a number that is zero or more where it holds, so that its opening can be located.
 
 `a >= b` becomes a - b, `and` the least, `or` the greatest of both sides. What equality decides has
-no side to cross, unless it is the value of a discrete variable, which is +1 or -1.
+no side to cross, unless it is the value of a discrete variable, which is +1 or -1. So is what else
+compares discrete variables only: `contacts > 0` does not hold at 0, where a difference would be 0.
 """
 
 from collections.abc import Collection
 from typing import Final
 
-from spec_schema.expressions.tree import Apply, Expr, Name, Number
+from spec_schema.expressions.tree import Apply, Expr, Name, Number, walk
 
 OPPOSITE: Final = {"ge": "lt", "gt": "le", "le": "gt", "lt": "ge", "eq": "ne", "ne": "eq"}
 DUAL: Final = {"and": "or", "or": "and"}
@@ -24,12 +25,12 @@ def signed(condition: Expr, discrete: Collection[str]) -> Expr | None:
     'min(x - 1, 0 - v)'
     """
     match condition:
+        case Apply(op=op, operands=operands) if _is_stepped(op, operands, discrete):
+            return Apply("where", (condition, Number(1.0), Number(-1.0)))
         case Apply(op="ge" | "gt", operands=(a, b)):
             return Apply("sub", (a, b))
         case Apply(op="le" | "lt", operands=(a, b)):
             return Apply("sub", (b, a))
-        case Apply(op="eq" | "ne", operands=operands) if _is_choice(operands, discrete):
-            return Apply("where", (condition, Number(1.0), Number(-1.0)))
         case Apply(op="and" | "or" as op, operands=(a, b)):
             left, right = signed(a, discrete), signed(b, discrete)
             return None if left is None or right is None else Apply(EXTREME[op], (left, right))
@@ -39,8 +40,12 @@ def signed(condition: Expr, discrete: Collection[str]) -> Expr | None:
     return None
 
 
-def _is_choice(operands: tuple[Expr, ...], discrete: Collection[str]) -> bool:
-    return any(isinstance(part, Name) and part.name in discrete for part in operands)
+def _is_stepped(op: str, operands: tuple[Expr, ...], discrete: Collection[str]) -> bool:
+    """Whether what is compared moves in steps: an equal value, or nothing but discrete ones."""
+    if op in {"eq", "ne"}:
+        return any(isinstance(part, Name) and part.name in discrete for part in operands)
+    names = {part.name for each in operands for part in walk(each) if isinstance(part, Name)}
+    return op in OPPOSITE and bool(names) and names <= {*discrete}
 
 
 def _negated(condition: Expr) -> Expr | None:

@@ -29,6 +29,7 @@ def quantities_of(world: World, robots: Sequence[Robot]) -> dict[str, Measured]:
     found = {f"{name}.{key}": _in(unit) for name in things for key, unit in OF_THING.items()}
     for robot in robots:
         found |= {f"{robot.name}.{key}": _in(unit) for key, unit in OF_ROBOT.items()}
+        found[f"{robot.name}.contacts"] = _in("1", kind=Kind.DISCRETE)
         for signal in robot.architecture.board:
             found[f"{robot.name}.{signal.name}"] = _in(signal.unit.text, signal.values, signal.kind)
         for node in robot.architecture.nodes:

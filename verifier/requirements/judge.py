@@ -9,7 +9,7 @@ import numpy as np
 from runtime.program import Unit
 from runtime.requirement import Requirement
 from verifier.report.requirement_results import Outcome, RequirementResult, Witness
-from verifier.report.wording import listed, number
+from verifier.report.wording import listed, number, quantity, suffix
 from verifier.requirements.course import BEYOND
 from verifier.requirements.robustness import Part, robustness
 from verifier.requirements.signals import Signal, Span, names_in, span_of
@@ -82,27 +82,28 @@ def _value_at(signal: Signal, time: float) -> float:
 
 
 def _sentence(result: RequirementResult, part: Part, span: Span, units: Mapping[str, Unit]) -> str:
-    unit = "" if result.unit.text in {"", "1"} else f" {result.unit.text}"
-    match result.outcome:
-        case Outcome.OPEN:
-            seconds = number(span.end - span.start)
-            return f"open: {_why_open(part, span)} (the run is {seconds} s long)"
-        case Outcome.SATISFIED:
-            if math.isinf(result.robustness):
-                return "satisfied"
-            how = f"satisfied by {number(result.robustness / result.unit.scale)}{unit}"
-        case Outcome.VIOLATED:
-            how = f"violated by {number(-result.robustness / result.unit.scale)}{unit}"
+    if result.outcome is Outcome.OPEN:
+        seconds = number(span.end - span.start)
+        return f"open: {_why_open(part, span)} (the run is {seconds} s long)"
+    how = f"{result.outcome}{_by(result)}"
     if result.witness is None:
         return how
     values = [_shown(name, value, units) for name, value in result.witness.values.items()]
     return f"{how} at {number(result.witness.time)} s, where {listed(values)}"
 
 
+def _by(result: RequirementResult) -> str:
+    """By how much, where that has one unit."""
+    robustness, unit = abs(result.robustness), result.unit
+    if not unit.text or math.isinf(robustness):
+        return ""
+    if robustness <= ROUNDING:
+        return ", but exactly at its bound,"
+    return f" by {number(robustness / unit.scale)}{suffix(unit)}"
+
+
 def _shown(name: str, value: float, units: Mapping[str, Unit]) -> str:
-    unit = units.get(name, Unit("1", 1.0))
-    suffix = "" if unit.text in {"", "1"} else f" {unit.text}"
-    return f"{name} is {number(value / unit.scale)}{suffix}"
+    return f"{name} is {quantity(value, units.get(name, Unit('1', 1.0)))}"
 
 
 def _why_open(part: Part, span: Span) -> str:

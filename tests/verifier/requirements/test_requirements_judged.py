@@ -162,7 +162,7 @@ def test_what_is_not_eventually_is_always_not(
         assert never == pytest.approx(always_not)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(FORMULAS, SAMPLES, SAMPLES, st.integers(0, 2))
 def test_bounds_hold_what_a_longer_run_shows(
     formula: tuple[Formula, ...], x: list[int], y: list[int], cut: int
@@ -182,7 +182,7 @@ def test_bounds_hold_what_a_longer_run_shows(
     assert later_high <= high + 1e-9
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(SAMPLES, SAMPLES, st.integers(0, 2), st.integers(0, 3), st.integers(1, 3))
 def test_more_room_makes_eventually_no_less_and_always_no_more(
     x: list[int], y: list[int], first: int, width: int, more: int

@@ -81,7 +81,7 @@ def margin(code: str, x: float, y: float) -> float:
     return {"x": x, "y": y, "1 x sub": 1 - x, "y 2 sub": y - 2}[code]
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(FORMULAS, SAMPLES, SAMPLES)
 def test_held_quantities_have_the_robustness_of_the_definition(
     formula: tuple[Formula, ...], x: list[int], y: list[int]
@@ -95,7 +95,7 @@ def test_held_quantities_have_the_robustness_of_the_definition(
     assert bounds(formula, sampled(x, y, is_held=True), LENGTH) == pytest.approx(expected)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(st.recursive(PREDICATES, formulas, max_leaves=3), SAMPLES, SAMPLES)
 def test_moving_quantities_come_as_close_to_the_definition_as_its_grid_is_fine(
     formula: tuple[Formula, ...], x: list[int], y: list[int]
