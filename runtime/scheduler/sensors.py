@@ -1,7 +1,7 @@
 """Sensors between the world and the nodes: when they sample, how well, and how late they say it."""
 
-import math
 import sys
+from collections import deque
 from collections.abc import Sequence
 from typing import Final, Protocol, final
 
@@ -12,7 +12,7 @@ from runtime.chance import generator
 from runtime.program import Kind
 from runtime.scheduler.clock import Clock, whole_steps
 from runtime.scheduler.environment import Delivery
-from runtime.world.model import Body, Sensor, SensorKind
+from runtime.world.model import Body, Reading, Sensor, SensorKind
 
 NEVER: Final = sys.maxsize
 """The instant that does not come."""
@@ -58,12 +58,14 @@ class SensorBank:
             said = line.quality.said(self._world.sample(line.robot, line.sensor))
             line.waiting.append((instant + line.latency if instant else 0, said))
         deliveries = []
-        for line in self._lines:
-            while line.waiting and line.waiting[0][0] <= instant:
-                deliveries.append(Delivery(line.robot, line.sensor, line.waiting.pop(0)[1]))
         sampling = self._clock.next_due
-        instants = [line.waiting[0][0] for line in self._lines if line.waiting]
-        self._next = min([NEVER if sampling is None else sampling, *instants])
+        self._next = NEVER if sampling is None else sampling
+        for line in self._lines:
+            waiting = line.waiting
+            while waiting and waiting[0][0] <= instant:
+                deliveries.append(Delivery(line.robot, line.sensor, waiting.popleft()[1]))
+            if waiting:
+                self._next = min(self._next, waiting[0][0])
         return deliveries
 
     def state(self) -> Array:
@@ -86,7 +88,7 @@ class _Line:
         self.period = whole_steps(sensor.every, step)
         self.latency = whole_steps(sensor.latency, step)
         self.quality = Quality(sensor, generator(seed, "sensor", f"{name}.{sensor.name}"))
-        self.waiting: list[tuple[int, Array]] = []
+        self.waiting: deque[tuple[int, Array]] = deque()
 
 
 @final
@@ -94,46 +96,41 @@ class Quality:
     """What a sensor makes of the truth: white noise, resolution, and the ends of its scale.
 
     Attributes:
-        last: (k,) what it said last; before that, far and straight ahead.
+        last: (k,) what it said last; before that, far and straight ahead. Nobody writes to it.
     """
 
     def __init__(self, sensor: Sensor, chance: np.random.Generator) -> None:
         readings = sensor.readings
         self.last = np.array([0.0 if r.kind is Kind.PERIODIC else r.high for r in readings])
         self._chance = chance
-        self._noise = np.array([reading.noise for reading in readings])
-        self._is_exact = not self._noise.any()
-        self._readings = tuple(
-            (r.kind, 1.0 if r.kind is Kind.DISCRETE else r.step, r.low, r.high) for r in readings
-        )
-        self._ends = sensor.kind is SensorKind.RANGE
+        self._is_noisy = any(reading.noise for reading in readings)
+        self._rows = tuple(_row(reading) for reading in readings)
+        self._has_echo = sensor.kind is SensorKind.RANGE
 
     def said(self, truth: Array) -> Array:
         """What it says, (k,), where `truth` is so.
 
         NaN: what it said last. A range that hit nothing says its reach, without noise.
         """
-        noise = truth * 0.0
-        if not self._is_exact:
-            noise = self._noise * self._chance.standard_normal(len(truth))
-        said = [
-            self._one(*row)
-            for row in zip(
-                *(truth.tolist(), noise.tolist(), self.last.tolist(), self._readings), strict=True
+        values = truth.tolist()
+        draws = self._chance.standard_normal(len(values)).tolist() if self._is_noisy else values
+        for place, (turns, noise, step, low, high) in enumerate(self._rows):
+            value = values[place]
+            if value != value:  # noqa: PLR0124 (NaN)
+                values[place] = float(self.last[place])
+                continue
+            if noise and not (self._has_echo and value >= high):
+                value += noise * draws[place]
+            if step:
+                value = round(value / step) * step
+            values[place] = (
+                low + (value - low) % (high - low) if turns else min(max(value, low), high)
             )
-        ]
-        self.last = np.array(said)
-        return self.last.copy()
+        self.last = np.array(values)
+        return self.last
 
-    def _one(
-        self, true: float, noise: float, last: float, reading: tuple[Kind, float, float, float]
-    ) -> float:
-        kind, step, low, high = reading
-        if math.isnan(true):
-            return last
-        value = true if self._ends and true >= high else true + noise
-        if step > 0.0:
-            value = round(value / step) * step
-        if kind is Kind.PERIODIC:
-            return low + (value - low) % (high - low)
-        return min(max(value, low), high)
+
+def _row(reading: Reading) -> tuple[bool, float, float, float, float]:
+    """Whether it turns, its noise, its steps (0: none), and the ends of its scale."""
+    step = 1.0 if reading.kind is Kind.DISCRETE else reading.step
+    return reading.kind is Kind.PERIODIC, reading.noise, step, reading.low, reading.high
