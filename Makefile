@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-senses bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -51,6 +51,9 @@ study: study-verify ## error rates, which departures the diagnosis names, refitt
 study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with planted departures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.verdicts
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.scores
+
+study-senses: .venv/ready ## how fast rays, light meters and maps of light are
+	$(BIN)/python -m tests.study.senses
 
 bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
