@@ -11,7 +11,9 @@ from specc.cli.warming import warmed
 
 
 def compile_(
-    spec: Annotated[Path, typer.Argument(help="A behavior spec (.yaml).", metavar="SPEC")],
+    spec: Annotated[
+        Path, typer.Argument(help="A behavior or architecture spec (.yaml).", metavar="SPEC")
+    ],
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Where the artifact goes; default NAME.specc here."),
@@ -23,7 +25,8 @@ def compile_(
 ) -> None:
     """Compile a behavior into interpolated tables with a *measured* error bound.
 
-    The same spec gives the same bytes. A `module` field runs the user's Python, here only.
+    An architecture is compiled with all that it names, into one file. The same spec gives the same
+    bytes. A `module` field runs the user's Python, here only.
 
     **Examples**
 
@@ -40,6 +43,9 @@ def compile_(
 
     require_suffix(output, ".specc")
 
+    if loading.kind_of(spec) == "architecture":
+        _architecture(spec, output, form)
+        return
     warmed(spec)
     with progress_bar(f"compiling {spec.name}") as progress:
         compiled = loading.compile_spec(spec, progress)
@@ -54,4 +60,28 @@ def compile_(
         print_json(results.compile_record(compiled, path, data))
         return
     print_text(results.compile_summary(compiled))
+    say(f"wrote {path} ({len(data):,} bytes)", "bold")
+
+
+def _architecture(spec: Path, output: Path | None, form: Format) -> None:
+    """An architecture with its body and behaviors, in one artifact."""
+    from specc import loading
+
+    with progress_bar(f"compiling {spec.name}") as progress:
+        compiled = loading.compile_architecture_spec(spec, progress)
+    show_diagnostics(compiled.warnings)
+    path = output or Path(f"{compiled.architecture.name}.specc")
+    data = loading.write_architecture(compiled, path)
+    channels = {
+        channel.name: channel.resolution.way.value for channel in compiled.architecture.channels
+    }
+    if form is Format.JSON:
+        record = {"name": compiled.architecture.name, "artifact": str(path), "bytes": len(data)}
+        print_json({**record, "channels": channels, "notes": list(compiled.notes)})
+        return
+    for channel in compiled.architecture.channels:
+        proof = f": {channel.resolution.proof}" if channel.resolution.proof else ""
+        say(f"{channel.name} {channel.resolution.way.value}{proof}")
+    for note in compiled.notes:
+        say(note)
     say(f"wrote {path} ({len(data):,} bytes)", "bold")
