@@ -27,7 +27,7 @@ STEP: Final = 0.02
 
 
 def where_it_shows(program: Program, members: list[Parameter], weights: Array) -> str:
-    """A suggestion where to drive so that a change along `weights` shows; empty without one."""
+    """A suggestion where to record so that a change along `weights` shows; empty without one."""
     flow = flow_of(program)
     points = _points(flow)
     effect = _effect(flow, points, members, weights)
@@ -40,7 +40,7 @@ def where_it_shows(program: Program, members: list[Parameter], weights: Array) -
         for control, place in _named(program.controls, best[:, n:])
         if control.name not in {each.name for each in members}
     ]
-    return f"drive with {listed(places)}: there it shows most" if places else ""
+    return f"record at {listed(places)}: there it shows most" if places else ""
 
 
 def _places(parts: tuple[State, ...], best: Array) -> list[str]:

@@ -158,7 +158,7 @@ def _unvisited(fidelity: Fidelity, part: State | Control, values: Array) -> list
             what=f"what the robot does where {part.name} is from {listed(spans)}",
             names=(part.name,),
             why=f"{percent(share)} of the {where} of {part.name} was never visited",
-            suggestion=f"drive with {part.name} there",
+            suggestion=f"record with {part.name} there",
             origin=part.origin,
         )
     ]

@@ -15,6 +15,10 @@ WITHOUT_SIZE: Final = {
     CandidateKind.REGION,
 }
 """Explanations that say all without their number."""
+CHECK_FIRST: Final = (
+    "before blaming the robot, check units, signs and the `delay:` of every entry in `trace:`"
+)
+"""Where a robot departs and nothing is known of why."""
 MOST: Final = 3
 """So many explanations are named, at most."""
 
@@ -26,8 +30,9 @@ def advised(report: Report, diagnosis: Diagnosis, switching: Switching | None) -
     """
     if report.verdict is Verdict.PASS or not report.variables:
         return report
-    advice = (*_of_diagnosis(report, diagnosis), *_of_switching(switching), *report.advice)
-    return replace(report, advice=tuple(dict.fromkeys(advice)))
+    known = (*_of_diagnosis(report, diagnosis), *_of_switching(switching))
+    rest = [each for each in report.advice if not (known and each == CHECK_FIRST)]
+    return replace(report, advice=tuple(dict.fromkeys((*known, *rest))))
 
 
 def _of_diagnosis(report: Report, diagnosis: Diagnosis) -> list[str]:

@@ -252,7 +252,7 @@ def test_too_little_coverage_withholds_a_pass_and_says_where_to_drive(scenes: Mo
 
     assert report.verdict is Verdict.INCONCLUSIVE
     assert "of the region of x and v was seen, 90 % is required" in report.reasons[0]
-    assert any(advice.startswith("drive with v from -4 to") for advice in report.advice)
+    assert any(advice.startswith("record v from -4 to") for advice in report.advice)
 
 
 def test_without_a_region_a_pass_says_how_far_it_reaches(scenes: ModuleType) -> None:

@@ -134,7 +134,7 @@ def test_more_data_is_asked_for_once_and_enough_for_all() -> None:
 
     (advice,) = sentences.more_data([one, other], 60.0)
 
-    assert "about 540 s of judged driving" in advice
+    assert "about 540 s of judged data" in advice
     assert "decide about x and y" in advice
 
 

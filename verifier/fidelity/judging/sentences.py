@@ -173,7 +173,7 @@ def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
     if others:
         enough = max(factors[name] for name in others) * judged
         told.append(
-            f"about {seconds(enough)} of judged driving like this (now {seconds(judged)}) would"
+            f"about {seconds(enough)} of judged data like these (now {seconds(judged)}) would"
             f" decide about {listed(others)}, if departures stay what they are"
         )
     return told
@@ -182,7 +182,7 @@ def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
 def too_few(horizon: float) -> str:
     """How much data gives an interval at all."""
     return (
-        f"record longer: {seconds(6.0 * horizon)} of judged driving (six horizons) is the least"
+        f"record longer: {seconds(6.0 * horizon)} of judged data (six horizons) is the least"
         " that gives an interval"
     )
 
@@ -213,7 +213,7 @@ def uncovered(coverage: Coverage) -> str:
 
 
 def unseen(coverage: Coverage) -> list[str]:
-    """Which values to drive through, axis by axis."""
+    """Which values to record, axis by axis."""
     seen = coverage.samples >= coverage.enough
     advice = []
     for position, axis in enumerate(coverage.axes):
@@ -222,10 +222,10 @@ def unseen(coverage: Coverage) -> list[str]:
         ranges = _unseen_ranges(axis, empty)
         if ranges:
             through = axis.name if axis.values else f"{axis.name} from"
-            advice.append(f"drive with {through} {listed(ranges)}: not seen at all")
+            advice.append(f"record {through} {listed(ranges)}, too: not seen at all")
     if advice:
         return advice
-    return ["drive through more combinations: every axis was covered, but not jointly"]
+    return ["record more combinations: every axis was covered, but not jointly"]
 
 
 def _unseen_ranges(axis: CellAxis, empty: Booleans) -> list[str]:

@@ -10,6 +10,7 @@ from runtime.program import Unit
 from verifier.fidelity.judging import sentences
 from verifier.fidelity.judging.evidence import Evidence
 from verifier.fidelity.judging.outside import Outside
+from verifier.report.advice import CHECK_FIRST
 from verifier.report.report import Coverage, Standing, VariableResult, Verdict
 from verifier.report.situations import exceeded
 from verifier.report.wording import listed, number, percent, quantity, span
@@ -90,10 +91,7 @@ def _failed(evidence: Evidence, failed: list[VariableResult], units: dict[str, U
         reasons.append(exceeded(result, units))
         reasons += sentences.proportion(evidence, result)
     reasons.append(sentences.what_is_systematic())
-    advice = (
-        "before blaming the robot, check units, signs and the `delay:` of every entry in `trace:`",
-    )
-    return Finding(Verdict.FAIL, tuple(reasons), advice)
+    return Finding(Verdict.FAIL, tuple(reasons), (CHECK_FIRST,))
 
 
 def _bars(evidence: Evidence) -> list[str]:
