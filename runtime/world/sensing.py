@@ -96,7 +96,10 @@ class Senses:
         return scene.lux(place, ANYWHERE, robot) + scene.ambient
 
     def light_map(self, cells: tuple[int, int]) -> LightMap:
-        """The light on the floor of the arena, on (nx, ny) cells over its bounding box."""
+        """The light on the floor of the arena, on (nx, ny) cells over its bounding box.
+
+        It is as of now; ask the world for its `geometry` before each `update` of the map.
+        """
         geometry, scene = self._scene.around.geometry(), self._scene
         corners = geometry.segments[geometry.owner[: len(geometry.segments)] == scene.walls, :2]
         box = (*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist())
