@@ -5,20 +5,18 @@ commanded to move and does not is reported, with what held it; and so is one tha
 solver holds with more force than its drive has, which no real thing would do.
 """
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, NamedTuple, final
 
-import numpy as np
-
-from runtime.arrays import Array
 from runtime.world.drive import Motor
-from runtime.world.space import SLOP, Space
+from runtime.world.space import SLOP, Space, Touches
 
-LOOK: Final = 0.05
+LOOK: Final = 0.1
 """Seconds between two looks at the robots."""
-LOOKS: Final = 20
+LOOKS: Final = 10
 """Looks that a judgement needs: it is over a second."""
 TRAVEL: Final = 0.03
 """Metres that must be commanded within these looks, before a robot can be stuck."""
@@ -70,7 +68,7 @@ class Audit:
 
 
 class _Look(NamedTuple):
-    """A robot at one look: what it was commanded since the last, did, and was held with."""
+    """A robot at one look: what it is commanded, did since the last, and was held with."""
 
     commanded: tuple[float, float]
     done: tuple[float, float]
@@ -96,7 +94,7 @@ class Auditor:
         self._every = max(round(LOOK / step), 1)
         self._seconds = self._every * step
         self._depth, self._pair, self._time = 0.0, ("", ""), 0.0
-        self._poses = space.states()[self._first :, :3]
+        self._poses = [(*body.position, body.angle) for body in space.bodies[self._first :]]
         self._looks: tuple[deque[_Look], ...] = tuple(deque(maxlen=LOOKS) for _ in motors)
         self._open: dict[int, Jam] = {}
         self._jams: list[Jam] = []
@@ -125,26 +123,28 @@ class Auditor:
         return Audit(self._depth, self._pair, self._time, tuple(jams))
 
     def _look(self, time: float, step: float) -> None:
-        touches = self._space.touches()
-        poses = self._space.states()[self._first :, :3]
-        travelled = np.hypot(*(poses - self._poses)[:, :2].T)
-        turned = np.abs(poses[:, 2] - self._poses[:, 2])
-        self._poses = poses
+        held = _held(self._space.touches(), self._first)
         for robot, motor in enumerate(self._motors):
-            solid = self._first + robot
-            ours = (touches.a == solid) | (touches.b == solid)
-            others = touches.a[ours] + touches.b[ours] - solid
-            held, thing = _strongest(others, touches.impulse[ours])
+            body = self._space.bodies[self._first + robot]
+            before, (x, y), heading = self._poses[robot], body.position, body.angle
+            self._poses[robot] = (x, y, heading)
             forward, left, turn = motor.ramps.now
-            commanded = (np.hypot(forward, left) * self._seconds, abs(turn) * self._seconds)
-            done = (float(travelled[robot]), float(turned[robot]))
-            self._looks[robot].append(_Look(commanded, done, held / step, thing))
-            self._judge(robot, time)
+            impulse, thing = held.get(self._first + robot, (0.0, -1))
+            self._looks[robot].append(
+                _Look(
+                    commanded=(math.hypot(forward, left), abs(turn)),
+                    done=(math.hypot(x - before[0], y - before[1]), abs(heading - before[2])),
+                    force=impulse / step,
+                    thing=thing,
+                )
+            )
+            if len(self._looks[robot]) == LOOKS:
+                self._judge(robot, time)
 
     def _judge(self, robot: int, time: float) -> None:
         """Open a jam, let it last, or close it."""
         looks = self._looks[robot]
-        cause = _cause(looks, self._motors[robot].grip)
+        cause = _cause(looks, self._motors[robot].grip, self._seconds)
         jam = self._open.pop(robot, None)
         if cause is None:
             if jam is not None:
@@ -163,24 +163,34 @@ class Auditor:
         )
 
 
-def _strongest(others: Array, impulses: Array) -> tuple[float, int]:
-    """The impulses of all contacts together, and who has the largest; -1 for nobody."""
-    if not len(others):
-        return 0.0, -1
-    # A pair's impulse stands at each of its points; it counts once.
-    by_thing: dict[int, float] = {}
-    for other, impulse in zip(others.tolist(), impulses.tolist(), strict=True):
-        by_thing[int(other)] = max(by_thing.get(int(other), 0.0), impulse)
-    return sum(by_thing.values()), max(by_thing, key=lambda thing: (by_thing[thing], -thing))
+def _held(touches: Touches, first: int) -> dict[int, tuple[float, int]]:
+    """For each robot that touches something: the sum of impulses, and who has the largest.
+
+    Robots are the solids from `first`. A pair's impulse stands at each of its points; of the
+    points of a pair, the largest counts.
+    """
+    pairs: dict[tuple[int, int], float] = {}
+    for a, b, impulse in zip(
+        touches.a.tolist(), touches.b.tolist(), touches.impulse.tolist(), strict=True
+    ):
+        for one, other in ((a, b), (b, a)):
+            if one >= first:
+                pairs[one, other] = max(pairs.get((one, other), 0.0), impulse)
+    found: dict[int, tuple[float, int]] = {}
+    largest: dict[int, float] = {}
+    for (one, other), impulse in pairs.items():
+        total, thing = found.get(one, (0.0, -1))
+        if impulse > largest.get(one, -1.0):
+            largest[one], thing = impulse, other
+        found[one] = (total + impulse, thing)
+    return found
 
 
-def _cause(looks: deque[_Look], grip: float) -> Cause | None:
-    """Why a robot is stuck by its last looks; None where it is not."""
-    if len(looks) < LOOKS:
-        return None
+def _cause(looks: deque[_Look], grip: float, seconds: float) -> Cause | None:
+    """Why a robot is stuck by its last looks, which are `seconds` apart; None where it is not."""
     if min(look.force for look in looks) > ABOVE * grip:
         return Cause.WEDGED
-    wanted = [sum(look.commanded[k] for look in looks) for k in range(2)]
+    wanted = [sum(look.commanded[k] for look in looks) * seconds for k in range(2)]
     done = [sum(look.done[k] for look in looks) for k in range(2)]
     asked = [k for k, least in enumerate((TRAVEL, TURN)) if wanted[k] >= least]
     if asked and all(done[k] < SHARE * wanted[k] for k in asked):

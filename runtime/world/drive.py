@@ -100,6 +100,7 @@ class Differential:
             _ghost(space, solid, (0.0, side), self.grip / 2.0) for side in (-self._half, self._half)
         )
         self._grips = True
+        self._stands = False
 
     def set(self, goal: Sequence[float | None]) -> None:
         """Head for speed (m/s) and turn (rad/s); None for what rolls freely."""
@@ -114,6 +115,13 @@ class Differential:
             for _, joint in self._wheels:
                 joint.max_force = self.grip / 2.0 * (1.0 if self._grips else ROLLING)
         speed, _, turn = self.ramps.now
+        if speed == 0.0 == turn:
+            if not self._stands:
+                for wheel, _ in self._wheels:
+                    wheel.velocity = (0.0, 0.0)
+            self._stands = True
+            return
+        self._stands = False
         heading = _next_heading(self._solid, seconds)
         cosine, sine = math.cos(heading), math.sin(heading)
         # Along the middle of the arc, so that turning while driving leaves no error of first order;

@@ -78,6 +78,15 @@ class Touches:
     depth: Array
 
 
+NOTHING: Final = Touches(
+    np.zeros(0, dtype=np.int64),
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, 2)),
+    np.zeros(0),
+    np.zeros(0),
+)
+
+
 @final
 class Space:
     """Solids within walls. Numbers of solids are their places; the walls have the next one.
@@ -141,6 +150,8 @@ class Space:
         batch.get_space_arbiters(self.space, CONTACT, self._buffer)
         whole = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).reshape(-1, 3)
         reals = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 8)
+        if not len(whole):
+            return NOTHING
         rows = []
         for (first, second, count), real in zip(whole.tolist(), reals.tolist(), strict=True):
             a, b = sorted((self._numbers[first], self._numbers[second]))

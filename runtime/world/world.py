@@ -131,7 +131,11 @@ class SimulatedWorld:
         self._near = _overlapping(self._plan.geometry)
         names = self._plan.geometry.names
         self._auditor = Auditor(self._space, names, self._motors, step)
-        self._arms = tuple(_arm(robot.body) for robot in self.inhabitants)
+        self._fewest = max(math.ceil(step / LONGEST - 1e-9), 1)
+        self._tips = tuple(
+            (motor.ramps, _arm(robot.body))
+            for motor, robot in zip(self._motors, self.inhabitants, strict=True)
+        )
         self._restless = 0.0
         self._ways = tuple(_ways(robot) for robot in self.inhabitants)
         self._steps = 0
@@ -249,13 +253,16 @@ class SimulatedWorld:
         Robots are as fast as their motors; what they hit may be faster for a while.
         """
         closing = self._space.fastest() if self._restless > 0.0 else 0.0
-        speeds = sorted(
-            math.hypot(motor.ramps.now[0], motor.ramps.now[1]) + abs(motor.ramps.now[2]) * arm
-            for motor, arm in zip(self._motors, self._arms, strict=True)
-        )
-        closing = max(closing, sum(speeds[-2:]))
-        fine = math.ceil(self.step * closing / (FURTHEST + SLOP))
-        return max(math.ceil(self.step / LONGEST - 1e-9), min(fine, FINEST), 1)
+        first = second = 0.0
+        for ramps, arm in self._tips:
+            forward, left, turn = ramps.now
+            speed = math.hypot(forward, left) + abs(turn) * arm
+            if speed > first:
+                first, second = speed, first
+            elif speed > second:
+                second = speed
+        fine = math.ceil(self.step * max(closing, first + second) / (FURTHEST + SLOP))
+        return max(self._fewest, min(fine, FINEST))
 
     def _now(self) -> Array:
         """The states of all solids after the last step."""

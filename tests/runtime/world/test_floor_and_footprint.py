@@ -34,7 +34,7 @@ def test_a_box_has_the_moment_of_inertia_of_a_box(length: float, width: float) -
     assert found.gyration == pytest.approx((length**2 + width**2) / 12.0)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(SEEDS)
 def test_a_polygon_has_the_moments_of_many_points_within_it(seed: int) -> None:
     shape = random_polygon(seed)
@@ -101,7 +101,7 @@ def felt(shape: Shape, velocity: np.ndarray, turn: float) -> tuple[np.ndarray, f
     return force, torque
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(SEEDS)
 def test_feet_hold_a_turn_with_the_mean_distance_of_the_surface(seed: int) -> None:
     shape = random_polygon(seed)
@@ -111,7 +111,7 @@ def test_feet_hold_a_turn_with_the_mean_distance_of_the_surface(seed: int) -> No
     assert -torque == pytest.approx(spread(shape).arm, rel=1e-6)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(SEEDS)
 def test_feet_hold_a_motion_without_turning_with_the_whole_friction(seed: int) -> None:
     shape = random_polygon(seed)

@@ -29,7 +29,7 @@ RUN = """
 from tests.runtime.world.test_world import crowded, wander
 from hashlib import blake2b
 chain = blake2b()
-wander(crowded(), 2.0, chain.update)
+wander(crowded(), 1.0, chain.update)
 print(chain.hexdigest())
 """
 
