@@ -2,8 +2,10 @@
 
 Windows are dealt to two halves, neighbours in pairs. The numbers for one half are those that the
 other half alone would give (a Gauss-Newton step from the fit to all), and each window is scored
-by the logarithm of the likelihood under the noise of the other half. Successive residuals that
-depend on one another count as the fewer that they are.
+by the logarithm of its likelihood. The noise is that of all errors made so: under the noise of the
+other half alone, one window that nothing explains, such as the first one of a sensor that is late,
+would outweigh all others. Successive residuals that depend on one another count as the fewer that
+they are.
 """
 
 from dataclasses import dataclass
@@ -55,13 +57,12 @@ def scored(scene: Scene, fitted: Fit) -> Scored:
         starts.append(steered(scene, fitted, values))
         sigmas.append(_noise_of(scene, fitted, train))
     found = left_over(scene, settings, starts, sigmas)
-    squares, likelihood = _empty(scene), _empty(scene)
-    for rest, sigma, mine in zip(found, sigmas, halves, strict=True):
-        per = _squares(scene, rest)
-        counts = np.stack([np.sum(each.used, axis=1) for each in scene.observed], axis=1)
-        squares[mine] = per[mine]
-        likelihood[mine] = -(per / (2.0 * sigma**2) + counts * np.log(sigma))[mine]
-    return Scored(squares, likelihood)
+    held = np.zeros_like(residual)
+    for rest, mine in zip(found, halves, strict=True):
+        held[mine] = rest[mine]
+    squares, sigma = _squares(scene, held), remaining_noise(scene, held)
+    counts = np.stack([np.sum(each.used, axis=1) for each in scene.observed], axis=1)
+    return Scored(squares, -(squares / (2.0 * sigma**2) + counts * np.log(sigma)))
 
 
 def halves_of(scene: Scene) -> list[Booleans]:
@@ -77,10 +78,6 @@ def _is_free(fitted: Fit) -> Booleans:
     ends = np.array([(number.low, number.high) for number in numbers]).reshape(-1, 2)
     values = np.array(fitted.values)
     return np.asarray((values > ends[:, 0]) & (values < ends[:, 1]))
-
-
-def _empty(scene: Scene) -> Array:
-    return np.zeros((scene.windows, len(scene.observed)))
 
 
 def _noise_of(scene: Scene, fitted: Fit, train: Booleans) -> Array:
