@@ -72,8 +72,8 @@ class Logs:
         """
         found: list[Case] = []
         for path, case in zip(self.paths, cases, strict=True):
-            is_at_hand = case.kept is not None and _reads_alike(case.program, program)
-            trace = case.kept[0] if is_at_hand and case.kept else self._read(path, program, tell)
+            kept = case.kept if _reads_alike(case.program, program) else None
+            trace = self._read(path, program, tell) if kept is None else kept[0]
             found.append(self._case(path, program, trace, tell, found))
         return tuple(found)
 
