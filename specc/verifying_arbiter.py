@@ -10,6 +10,7 @@ from runtime.arrays import Array
 from runtime.user_code import Callee
 from specc.faults import fault
 from verifier.arbitration.judging import judge_arbiter
+from verifier.arbitration.reader import CHOICE
 from verifier.report.examination import Examination
 from verifier.traces.trace import Trace
 
@@ -37,22 +38,27 @@ def examine_arbiter(arbiter: Arbiter, trace: Trace, *, only_verdict: bool = Fals
     Raises:
         SpecError: the choice, or something that is read, is not in the log (V310).
     """
-    made = judge_arbiter(arbiter, trace, _running(arbiter, trace), only_verdict=only_verdict)
+    decides = running(arbiter, arbiter.name, _period(trace))
+    made = judge_arbiter(arbiter, trace, decides, only_verdict=only_verdict)
     origins = {"fidelity": made.section.origin}
     return Examination(made.report, origins=origins, arbitration=made.section)
 
 
-def _running(arbiter: Arbiter, trace: Trace) -> Callable[[Array, float], Array] | None:
-    """One that decides tick by tick, of those that are no rules."""
+def running(arbiter: Arbiter, name: str, period: float) -> Callable[[Array, float], Array] | None:
+    """One that decides tick by tick, of those that are no rules, under the name of its node."""
     if arbiter.paradigm in {Paradigm.RULES, Paradigm.SUBSUMPTION}:
         return None
-    choice = trace.series.get("choice")
-    period = 0.1
-    if choice is not None and choice.times.size > 1:
-        period = float((choice.times[-1] - choice.times[0]) / (choice.times.size - 1))
-    made = arbiter_of(arbiter, arbiter.name, period, _no_code)
+    made = arbiter_of(arbiter, name, period, _no_code)
     made.reset(SEED)
     return made.decide
+
+
+def _period(trace: Trace) -> float:
+    """The mean time between two decisions."""
+    choice = trace.series.get(CHOICE)
+    if choice is None or choice.times.size < 2:
+        return 0.1
+    return float((choice.times[-1] - choice.times[0]) / (choice.times.size - 1))
 
 
 def _no_code(name: str) -> Callee:

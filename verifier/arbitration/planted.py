@@ -4,6 +4,8 @@ A log without disagreements does not show how long one lasts. So thresholds are 
 until the share that is required is reached, and what then differs is looked at.
 """
 
+from typing import Final
+
 import numpy as np
 
 from runtime.arrays import Booleans
@@ -11,6 +13,9 @@ from runtime.machine import evaluate
 from verifier.arbitration.choosing import RuleChooser
 from verifier.arbitration.decisions import Decisions
 from verifier.arbitration.shares import FEW, slowness_of
+
+PLAIN: Final = 2.0
+"""A threshold whose least move changes so many times what is allowed shows without statistics."""
 
 
 def slowness_at_limit(rules: RuleChooser, decisions: Decisions, required: float) -> float:
@@ -38,5 +43,7 @@ def slowness_at_limit(rules: RuleChooser, decisions: Decisions, required: float)
             while near < far:
                 middle = (near + far) // 2
                 near, far = (near, middle) if changed(middle).sum() >= wanted else (middle + 1, far)
-            found.append(slowness_of(changed(near).astype(float)))
+            at_limit = changed(near)
+            if at_limit.sum() <= PLAIN * wanted:
+                found.append(slowness_of(at_limit.astype(float)))
     return max(found, default=np.inf)

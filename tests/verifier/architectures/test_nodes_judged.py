@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from runtime.architecture import Architecture, Way
 from runtime.program import Program
 from runtime.scheduler.scheduler import Scheduler
 from specc.loading import load_program
+from specc.verifying_architecture import examine_nodes, nodes_text, verdict_of
 from tests.runtime.scheduler.plane import STEP, N, Plain, Plane, architecture, resolution, scenario
 from verifier.architectures.gathering import Gathered
 from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
@@ -38,6 +40,7 @@ by:
   rules:
     - {{choose: home, when: x > {far}, until: x < 0.3}}
     - {{choose: away}}
+agreement: {{share: 0.95}}
 """
 
 
@@ -53,6 +56,9 @@ def arbiter(folder: Path, far: float) -> Arbiter:
     path = folder / f"choose_{far}.yaml"
     path.write_text(ARBITER.format(far=far))
     return compile_arbiter(path).arbiter
+
+
+Recorded: TypeAlias = tuple[Architecture, tuple[NodeRecord, ...]]
 
 
 class Weak(Plane):
@@ -83,7 +89,13 @@ def wired(folder: Path) -> Architecture:
 RATE = {"x": ("x", "rate")}
 
 
-def run(folder: Path, plane: Plane) -> tuple[Architecture, tuple[NodeRecord, ...]]:
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
+    """Two minutes of a robot that does as it is told."""
+    return run(tmp_path_factory.mktemp("recorded"), Plane())
+
+
+def run(folder: Path, plane: Plane) -> Recorded:
     """Two minutes."""
     whole = wired(folder)
     gathered = Gathered(whole, 0, STEP)
@@ -91,8 +103,8 @@ def run(folder: Path, plane: Plane) -> tuple[Architecture, tuple[NodeRecord, ...
     return whole, gathered.records()
 
 
-def test_behaviors_are_judged_only_where_they_have_their_way(tmp_path: Path) -> None:
-    whole, (home, away, _) = run(tmp_path, Plane())
+def test_behaviors_are_judged_only_where_they_have_their_way(recorded: Recorded) -> None:
+    whole, (home, away, _) = recorded
 
     for record, program in zip((home, away), whole.programs, strict=True):
         assert 0.1 < record.free.mean() < 0.9
@@ -111,8 +123,10 @@ def test_a_drive_that_is_too_weak_fails_the_behaviors_that_use_it(tmp_path: Path
         assert made.report.verdict is Verdict.FAIL
 
 
-def test_an_arbiter_is_judged_by_what_it_sampled_and_chose(tmp_path: Path) -> None:
-    whole, (*_, choose) = run(tmp_path, Plane())
+def test_an_arbiter_is_judged_by_what_it_sampled_and_chose(
+    tmp_path: Path, recorded: Recorded
+) -> None:
+    whole, (*_, choose) = recorded
 
     right = examine_decisions(whole.arbiters[0], choose, "run")
     assert right.arbitration is not None
@@ -148,3 +162,13 @@ def test_who_is_suppressed_or_blended_has_not_its_way(
     assert found[0].tolist() == expected
     assert found[1].tolist() == [False, True, True]
     assert not found[2].any()
+
+
+def test_all_nodes_are_told_in_one_table(recorded: Recorded) -> None:
+    whole, records = recorded
+
+    found = examine_nodes(whole, records, "run", only_verdict=True)
+
+    assert [each.name for each in found] == ["home", "away", "choose"]
+    assert verdict_of(found) is Verdict.PASS
+    assert "choose" in nodes_text(found)
