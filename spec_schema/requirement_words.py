@@ -31,7 +31,7 @@ OTHER_WORDS: Final = {
 _UNIT: Final = r"[A-Za-zµμ°Ω]+(?:\^-?\d)?"
 _NOT_UNIT: Final = rf"(?!(?:{'|'.join(sorted(KEYWORDS))}|pi)\b)"
 _ONE_UNIT: Final = rf"{_NOT_UNIT}{_UNIT}(?![\w.(])"
-_NUMBER: Final = r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER: Final = r"(?>(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)"
 _TOKEN: Final = re.compile(
     rf"(?P<quantity>{_NUMBER}[ ]*(?:1/)?{_ONE_UNIT}(?:[*/]{_ONE_UNIT})*)"
     rf"|(?P<number>{_NUMBER})"

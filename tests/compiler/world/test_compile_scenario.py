@@ -1,0 +1,145 @@
+"""Worlds and scenarios from their files: geometry, time, starts, requirements."""
+
+import math
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from compiler.architecture.timing import common, exact
+from compiler.check import check
+from compiler.world.overlap import overlap, within
+from compiler.world.scenario import CompiledScenario, compile_scenario
+from runtime.world.model import Disc, Polygon, Pose, Shape
+
+PARTS = Path(__file__).parents[2] / "golden" / "bad" / "parts"
+
+
+def in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""
+
+
+@pytest.fixture(scope="module")
+def first_light() -> CompiledScenario:
+    return compile_scenario(PARTS / "first_light.yaml", in_silence, seed=3)
+
+
+def scenario(tmp_path: Path, robots: str, more: str = "") -> Path:
+    path = tmp_path / "tried.yaml"
+    path.write_text(
+        f"specc: 1\nkind: scenario\nname: tried\nworld: {PARTS}/office.yaml\n"
+        f"robots: {robots}\nduration: 5 s\n{more}\n",
+        encoding="utf-8",
+    )
+    return path
+
+
+def codes(path: Path) -> list[str]:
+    return [found.code for found in check(path)]
+
+
+def test_the_step_is_the_longest_that_divides_every_time(first_light: CompiledScenario) -> None:
+    """Periods 50 and 100 ms, sensors 50 and 20 ms: 10 ms is shared, and 1/240 s the limit."""
+    found = first_light.scenario
+
+    assert found.step == pytest.approx(1 / 300)
+    for time in (0.05, 0.1, 0.02):
+        assert time / found.step == pytest.approx(round(time / found.step), abs=1e-9)
+    assert found.seed == 3
+
+
+@given(st.lists(st.tuples(st.integers(1, 2000), st.integers(1, 1000)), min_size=1, max_size=5))
+def test_what_times_share_divides_each_and_nothing_longer_does(
+    ratios: list[tuple[int, int]],
+) -> None:
+    times = [Fraction(*ratio) for ratio in ratios]
+    shared = common(times)
+    counts = [time / shared for time in times]
+
+    assert all(count.denominator == 1 for count in counts)
+    assert math.gcd(*(int(count) for count in counts)) == 1
+
+
+@given(st.integers(1, 2000), st.integers(1, 2000))
+def test_a_time_is_read_as_the_fraction_that_was_meant(over: int, under: int) -> None:
+    assert exact(over / under) == Fraction(over, under)
+
+
+def test_the_world_is_in_si_with_walls_counter_clockwise(first_light: CompiledScenario) -> None:
+    world = first_light.scenario.world
+    desk, crate = world.things
+
+    assert world.arena == ((0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0))
+    assert desk.pose == Pose(1.0, 2.0, pytest.approx(math.radians(30)))
+    assert desk.is_fixed
+    assert crate.mass == 1.0
+    assert world.lights[1].on == "crate"
+    assert world.lights[1].cone == pytest.approx(math.radians(60))
+    assert world.scattered[0].fixed == 0.25
+
+
+SQUARE = Shape((), (Polygon(((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))),))
+ROUND = Shape((Disc(0.0, 0.0, 0.5),), ())
+place = st.floats(-2, 2, allow_nan=False)
+
+
+@given(place, place, st.floats(-4, 4))
+def test_squares_overlap_where_a_fine_grid_finds_a_common_point(
+    x: float, y: float, turn: float
+) -> None:
+    """A second way: points of a grid in one square that lie in the other, with its own margin."""
+    side = np.linspace(-0.5, 0.5, 201)
+    a, b = np.meshgrid(side - x, side - y, indexing="ij")
+    u, v = np.cos(turn) * a + np.sin(turn) * b, np.cos(turn) * b - np.sin(turn) * a
+    depth = float(np.max(0.5 - np.maximum(np.abs(u), np.abs(v))))
+    found = overlap(SQUARE, Pose(0.0, 0.0, 0.0), SQUARE, Pose(x, y, turn))
+
+    if depth > 1e-5:
+        assert found
+    elif depth < -0.01:
+        assert not found
+
+
+@given(place, place)
+def test_discs_overlap_where_their_middles_are_near(x: float, y: float) -> None:
+    apart = math.hypot(x, y)
+    if abs(apart - 1.0) > 1e-5:
+        assert overlap(ROUND, Pose(0, 0, 0), ROUND, Pose(x, y, 0)) == (apart < 1.0)
+
+
+@given(place, place)
+def test_a_disc_overlaps_a_square_by_its_distance(x: float, y: float) -> None:
+    distance = math.hypot(max(abs(x) - 0.5, 0.0), max(abs(y) - 0.5, 0.0))
+    if abs(distance - 0.5) > 1e-5:
+        assert overlap(SQUARE, Pose(0, 0, 0), ROUND, Pose(x, y, 0)) == (distance < 0.5)
+
+
+def test_within_means_clear_of_every_wall_of_a_room_with_a_corner() -> None:
+    room = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 4.0), (2.0, 2.0), (0.0, 2.0))
+
+    assert within(ROUND, Pose(1.0, 1.0, 0.0), room)
+    assert within(ROUND, Pose(3.0, 3.0, 0.0), room)
+    assert not within(ROUND, Pose(1.8, 1.8, 0.0), room)
+    assert not within(ROUND, Pose(1.0, 3.0, 0.0), room)
+    assert not within(ROUND, Pose(0.4, 1.0, 0.0), room)
+    assert not within(SQUARE, Pose(2.4, 3.0, 0.0), room)
+
+
+@pytest.mark.parametrize(
+    ("at", "wrong"),
+    [("[3, 1]", []), ("[1, 2]", ["S327"]), ("[0.05, 1]", ["S327"]), ("random", [])],
+)
+def test_a_start_is_free(tmp_path: Path, at: str, wrong: list[str]) -> None:
+    robots = f"{{r: {{architecture: {PARTS}/find_light.yaml, at: {at}}}}}"
+
+    assert codes(scenario(tmp_path, robots)) == wrong
+
+
+def test_a_step_below_a_tenth_of_a_millisecond_is_refused(tmp_path: Path) -> None:
+    robots = f"{{r: {{architecture: {PARTS}/find_light.yaml}}}}"
+
+    assert codes(scenario(tmp_path, robots, "step: 0.01 ms")) == ["S352"]
+    assert codes(scenario(tmp_path, robots, "step: 1 ms")) == []
