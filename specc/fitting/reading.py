@@ -90,7 +90,7 @@ def _late_instead(diagnosis: Diagnosis) -> list[tuple[Candidate, Candidate]]:
 
 
 def _either(dead: Candidate, late: Candidate) -> str:
-    said = (each.sentence.split(";")[0] for each in (dead, late))
+    said = (each.claim for each in (dead, late))
     return f"{', or '.join(said)}: these leave the same trace (--anyway writes the latter)"
 
 

@@ -81,7 +81,7 @@ def _mended(
         return Aim(path, f"scale of {name}", scale, 0.0, "1", 1.0, candidate.sentence)
     own = parts_of(program)[name].unit
     slips = alternatives(unit_read(own, binding))
-    slip = next((each for each in slips if candidate.label.startswith(each.words)), None)
+    slip = next((each for each in slips if each.words == candidate.slip), None)
     if slip is not None and slip.written:
         path = ("trace", name, "unit")
         return UnitAim(path, f"unit of {name}", slip.written, candidate.sentence)

@@ -72,7 +72,12 @@ def number(kind: ParameterKind, name: str, value: float) -> Refitted:
 
 
 def candidate(
-    kind: CandidateKind, *names: str, value: float = 0.0, label: str = "", share: float = 0.95
+    kind: CandidateKind,
+    *names: str,
+    value: float = 0.0,
+    label: str = "",
+    share: float = 0.95,
+    slip: str = "",
 ) -> Candidate:
     fitted = FittedNumber("value", ONE, 0.0, value, Interval(value - 0.01, value + 0.01))
     evidence = Evidence(20, share, 40.0, ())
@@ -85,7 +90,9 @@ def candidate(
         is_taken=True,
         alike=(),
         origin="",
-        sentence=f"{kind} of {names}",
+        claim=f"{kind} of {names}",
+        sentence=f"{kind} of {names}; it explains 95 %",
+        slip=slip,
     )
 
 
@@ -166,16 +173,16 @@ def test_a_late_log_and_a_clock_add_up() -> None:
 
 
 @pytest.mark.parametrize(
-    ("unit", "label", "factor", "text"),
+    ("unit", "words", "factor", "text"),
     [
-        (RADIAN, "degrees for radians in heading", 0.0174533, "deg"),
-        (Unit("deg", 0.0174533), "radians for degrees in heading", 57.29578, "rad"),
+        (RADIAN, "degrees for radians", 0.0174533, "deg"),
+        (Unit("deg", 0.0174533), "radians for degrees", 57.29578, "rad"),
     ],
 )
 def test_a_unit_slip_becomes_the_unit_of_the_log(
-    unit: Unit, label: str, factor: float, text: str
+    unit: Unit, words: str, factor: float, text: str
 ) -> None:
-    slip = candidate(CandidateKind.UNIT_SLIP, "heading", value=factor, label=label)
+    slip = candidate(CandidateKind.UNIT_SLIP, "heading", value=factor, slip=words)
 
     [aim] = aims_of(program(binding("heading", unit)), diagnosis(slip)).aims
 
@@ -184,8 +191,8 @@ def test_a_unit_slip_becomes_the_unit_of_the_log(
 
 
 def test_a_slip_that_its_unit_would_not_mend_is_left_to_people() -> None:
-    label = "radians for degrees in heading"
-    slip = candidate(CandidateKind.UNIT_SLIP, "heading", value=57.29578, label=label)
+    words = "radians for degrees"
+    slip = candidate(CandidateKind.UNIT_SLIP, "heading", value=57.29578, slip=words)
 
     told = aims_of(program(binding("heading", RADIAN)), diagnosis(slip))
 

@@ -63,7 +63,10 @@ class Number:
 class Effect:
     """Something that may be otherwise than the spec or the log says, with the numbers it takes.
 
-    label: as in `dead time of turn`. starts: where a fit begins, the neutral values if empty.
+    label: as in `dead time of turn`. subject: what is late, bounded or off, in words; empty where
+    `applies_to` says it. detail: of a further term, the term; of a region, on which side of its
+    border it lies. is_delay: a number of seconds that may be negative, by which it is named a dead
+    time, a late log or an early one. starts: where a fit begins, the neutral values if empty.
     parameter: set where it is one of the scalars that are refitted. stands_in: it
     puts measured states in place of predicted ones, so that it is compared with itself at its
     neutral values. best_of: so many like it were looked at before, which costs their logarithm.
@@ -81,6 +84,9 @@ class Effect:
     stands_in: bool = False
     best_of: int = 1
     slips: tuple[Slip, ...] = ()
+    subject: str = ""
+    detail: str = ""
+    is_delay: bool = False
 
     @property
     def neutral(self) -> Values:

@@ -3,7 +3,6 @@
 from typing import Final
 
 from verifier.diagnosis import sentences
-from verifier.diagnosis.candidates.inputs import DELAY
 from verifier.diagnosis.naming import label_of
 from verifier.diagnosis.selection import PLIANT, Selection, Step, Tried
 from verifier.report.diagnosis import (
@@ -109,10 +108,10 @@ def _in_other_words(step: Step, candidates: tuple[Candidate, ...], *, is_only: b
     """
     head = step.tried[0]
     found = [each for each in step.same if each.matters and each.effect.kind not in PLIANT]
-    if head.effect.label.startswith(DELAY):
-        found = [each for each in found if each.effect.label.startswith(DELAY)]
+    if head.effect.is_delay:
+        found = [each for each in found if each.effect.is_delay]
     found.sort(key=_rank)
-    told = {each.label: each.sentence.split(";")[0] for each in candidates}
+    told = {each.label: each.claim for each in candidates}
     said = sentences.in_other_words([told.get(_name(each)) or _said(each) for each in found])
     return [said if is_only else f"{_name(head)}: {said}"] if found else []
 

@@ -161,6 +161,7 @@ def _candidate(program: Program, ways: Sequence[Way], group: tuple[Threshold, ..
         is_taken=True,
         alike=tuple(_label(ways, each) for each in group[1:]),
         origin=origin or ways[found.number.guards[0]].origin,
+        claim=_sentence(program, ways, found),
         sentence=_sentence(program, ways, found),
     )
 

@@ -27,7 +27,7 @@ def kind_of(effect: Effect, values: Values) -> CandidateKind:
 def label_of(effect: Effect, values: Values) -> str:
     """A short name: `late log of turn`, `sign of turn`."""
     kind, names = kind_of(effect, values), listed(list(effect.applies_to))
-    if effect.label.startswith("delay of "):
+    if effect.is_delay:
         is_early = kind is CandidateKind.LATE_LOG and values[0] > 0.0
         return f"{'early log' if is_early else kind} of {names}"
     if kind is CandidateKind.SIGN:

@@ -10,13 +10,14 @@ from verifier.diagnosis.candidates.inputs import origin_of
 from verifier.diagnosis.candidates.readings import Reading
 from verifier.diagnosis.fitting import intervals_of
 from verifier.diagnosis.leftover import Bench, leaves
-from verifier.diagnosis.naming import kind_of, label_of
+from verifier.diagnosis.naming import kind_of, label_of, slip_of
 from verifier.diagnosis.refitting import Number
 from verifier.diagnosis.rereading import Reread
 from verifier.diagnosis.selection import Selection, Step, Tried
 from verifier.fidelity.stretches.needs import parts_of
 from verifier.report.diagnosis import (
     Candidate,
+    CandidateKind,
     DepartureAfter,
     DifferingRegion,
     Evidence,
@@ -131,8 +132,10 @@ def reading_of(
         is_taken=True,
         alike=(),
         origin=origin_of(bindings, reading.applies_to[0]),
+        claim=reading.words,
         sentence=f"{reading.words}; {evidence}{sentences.still(left, ())}",
         leaves=left,
+        slip=reading.slip,
     )
 
 
@@ -177,11 +180,11 @@ def _candidate(
             for t in (*step.same, *step.alike)
         )
     )
-    said = sentences.of_candidate(effect, values, numbers)
+    kind, said = kind_of(effect, values), sentences.of_candidate(effect, values, numbers)
     left = leaves(bench, tried.fitted)
     evidence = f"{sentences.evidence(tried.share, before)}{sentences.still(left, before)}"
     return Candidate(
-        kind=kind_of(effect, values),
+        kind=kind,
         applies_to=effect.applies_to,
         label=label_of(effect, values),
         numbers=numbers,
@@ -189,6 +192,8 @@ def _candidate(
         is_taken=step is not None,
         alike=alike,
         origin=effect.origin,
+        claim=said,
         sentence=f"{said}; {evidence}",
         leaves=left,
+        slip=slip_of(effect, values) if kind is CandidateKind.UNIT_SLIP else "",
     )

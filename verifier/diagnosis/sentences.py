@@ -59,7 +59,7 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
     found = [
         f"{with_doubt(abs(n.value), n.interval, n.unit.scale)}{suffix(n.unit)}" for n in numbers
     ]
-    subject = effect.label.partition(" of ")[2] or names
+    subject = effect.subject or names
     size = found[0] if found else ""
     side = "early" if values and values[0] > 0.0 else "late"
     verb = "act" if len(effect.applies_to) > 1 else "acts"
@@ -85,17 +85,16 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
 
 def _in_a_region(effect: Effect, numbers: tuple[FittedNumber, ...], size: str) -> str:
     rate, name = effect.applies_to
-    side = "above" if " at large " in effect.label else "below"
     way = "higher" if numbers[0].value > 0.0 else "lower"
     edge = numbers[1]
     border = f"{with_doubt(edge.value, edge.interval, edge.unit.scale)}{suffix(edge.unit)}"
-    return f"the rate of {rate} is {size} {way} where {name} is {side} {border}"
+    return f"the rate of {rate} is {size} {way} where {name} is {effect.detail} {border}"
 
 
 def _with_a_term(effect: Effect, found: FittedNumber) -> str:
-    rate, words = effect.applies_to[0], effect.label.removeprefix("term ").partition(" in the ")[0]
     size = with_doubt(found.value, found.interval, found.unit.scale)
-    return f"the rate of {rate} has a further term {size}{suffix(found.unit)} times {words}"
+    term = f"{size}{suffix(found.unit)} times {effect.detail}"
+    return f"the rate of {effect.applies_to[0]} has a further term {term}"
 
 
 def of_scalar(effect: Effect, found: FittedNumber) -> str:

@@ -137,8 +137,10 @@ class Candidate:
 
     applies_to: the variables, inputs or topics. label: a short name, such as `dead time of turn`.
     is_taken: the diagnosis names it. alike: labels of the candidates that explain as well.
-    origin: where in the YAML it would be mended. leaves: what it leaves beyond a tolerance, with
-    those that were taken before it; empty where nothing is.
+    origin: where in the YAML it would be mended. claim: what the robot, the spec or the log would
+    have to be like; `sentence` adds the evidence. leaves: what it leaves beyond a tolerance,
+    with those that were taken before it; empty where nothing is. slip: of a UNIT_SLIP, what the
+    log is in and what it was taken for, in words.
     """
 
     kind: CandidateKind
@@ -149,8 +151,10 @@ class Candidate:
     is_taken: bool
     alike: tuple[str, ...]
     origin: str
+    claim: str
     sentence: str
     leaves: str = ""
+    slip: str = ""
 
 
 @final

@@ -6,7 +6,9 @@ import pytest
 
 from runtime.program import Unit
 from tests.verifier.fidelity.conftest import unicycle, unicycle_drive
-from verifier.diagnosis.sentences import where
+from verifier.diagnosis.altered import Effect, Number
+from verifier.diagnosis.naming import label_of
+from verifier.diagnosis.sentences import of_candidate, where
 from verifier.fidelity.verify import verify
 from verifier.report.advice import advised
 from verifier.report.diagnosis import (
@@ -48,6 +50,49 @@ def test_where_a_variable_still_differs_is_said_as_the_verdict_says_it(
     assert where("heading", region(**changes), UNITS) == said
 
 
+def effect(kind: CandidateKind, *names: str, **more: object) -> Effect:
+    """Its label says nothing."""
+    number = Number("", METRE, 0.0, 0.1, -9.0, 9.0)
+    plain = Effect(kind, names, "label", (number, number), lambda setting, _: setting, "")
+    return replace(plain, **more)
+
+
+@pytest.mark.parametrize(
+    ("tried", "said"),
+    [
+        (effect(CandidateKind.DEAD_TIME, "turn"), "turn acts 0.5 m later than the spec says"),
+        (
+            effect(CandidateKind.LAG, "x", subject="the rate of x"),
+            "the rate of x acts through a first-order lag of 0.5 m",
+        ),
+        (
+            effect(CandidateKind.CLOCK_OFFSET, "x", "y", subject="/odom"),
+            "the stamps of /odom are 0.5 m early beside those of the other topics",
+        ),
+        (
+            effect(CandidateKind.TERM, "v", "x", detail="x |x|"),
+            "the rate of v has a further term 0.5 m times x |x|",
+        ),
+        (
+            effect(CandidateKind.REGION, "v", "x", detail="below"),
+            "the rate of v is 0.5 m higher where x is below 0.5 m",
+        ),
+    ],
+)
+def test_an_explanation_is_told_from_its_parts(tried: Effect, said: str) -> None:
+    exact = FittedNumber("", METRE, 0.0, 0.5, Interval(0.5, 0.5))
+
+    assert of_candidate(tried, (0.5, 0.5), (exact, exact)) == said
+
+
+def test_only_a_delay_is_named_by_its_direction() -> None:
+    late = effect(CandidateKind.DEAD_TIME, "turn", is_delay=True)
+
+    assert label_of(late, (0.5,)) == "dead time of turn"
+    assert label_of(late, (-0.5,)) == "late log of turn"
+    assert label_of(replace(late, is_delay=False), (0.5,)) == "label"
+
+
 @pytest.fixture(scope="module")
 def failed() -> Report:
     return verify(unicycle(1.2), unicycle_drive(4, 60.0, 0.01))
@@ -67,6 +112,7 @@ def of_a_guard(name: str, *moved: str) -> Diagnosis:
         is_taken=True,
         alike=(),
         origin="spec.yaml:3:1",
+        claim="",
         sentence="",
     )
     refitted = tuple(

@@ -3,10 +3,9 @@
 from typing import TypeAlias
 
 from verifier.diagnosis.altered import Effect
-from verifier.diagnosis.candidates.inputs import DELAY, delay_of, origin_of
+from verifier.diagnosis.candidates.inputs import delay_of, origin_of
 from verifier.diagnosis.parameters import varying
 from verifier.diagnosis.scene import Scene
-from verifier.report.wording import listed
 
 Group: TypeAlias = tuple[tuple[str, ...], tuple[str, ...]]
 """Inputs and states that are late together."""
@@ -22,22 +21,22 @@ def effects_on_clocks(scene: Scene) -> tuple[Effect, ...]:
     states = tuple(each.name for each in scene.observed)
     bindings = {binding.name: binding for binding in scene.program.bindings}
     paths = {name: bindings[name].path for name in (*inputs, *states) if name in bindings}
-    labels = _topics(inputs, states, paths)
+    topics = _topics(inputs, states, paths)
     groups: list[Group] = [(inputs, ())] if len(inputs) > 1 else []
     if not scene.program.field.is_map:
         groups += [((), states), *(((), (name,)) for name in states)]
     for group in groups:
-        labels.setdefault(group, f"{DELAY}{listed([*group[0], *group[1]])}")
+        topics.setdefault(group, "")
     return tuple(
-        delay_of(mine, seen, label, scene.horizon, origin_of(bindings, (*mine, *seen)[0]))
-        for (mine, seen), label in labels.items()
+        delay_of(mine, seen, scene.horizon, origin_of(bindings, (*mine, *seen)[0]), topic=topic)
+        for (mine, seen), topic in topics.items()
     )
 
 
 def _topics(
     inputs: tuple[str, ...], states: tuple[str, ...], paths: dict[str, str]
 ) -> dict[Group, str]:
-    """Topics that hold several series, but not all, with their labels.
+    """Topics that hold several series, but not all, by these.
 
     One of a single input is the input's own. A topic that holds all states is left alone: its
     clock is off against the inputs just as theirs is against it.
@@ -48,7 +47,7 @@ def _topics(
         mine = tuple(name for name in inputs if name in own)
         seen = tuple(name for name in states if name in own)
         if topic and len(seen) < len(states) and (seen or len(mine) > 1):
-            found[mine, seen] = f"clock of {topic}"
+            found[mine, seen] = topic
     return found
 
 

@@ -12,12 +12,11 @@ from verifier.diagnosis.parameters import varying
 from verifier.diagnosis.scene import Scene
 from verifier.fidelity.stretches.needs import Input, parts_of
 from verifier.report.diagnosis import CandidateKind
+from verifier.report.wording import listed
 
 SECOND: Final = Unit("s", 1.0)
 SHIFTS: Final = (0.02, 0.05, 0.1, 0.2, 0.4)
 """Where fits of a delay begin, to either side, in horizons."""
-DELAY: Final = "delay of "
-"""How the label of a delay begins that is not that of a topic's clock."""
 LAGS: Final = (0.02, 0.1, 0.3)
 LIMITS: Final = (0.9, 0.75, 0.6, 0.4)
 """Where fits of a limit begin, in largest values seen."""
@@ -34,7 +33,7 @@ def effects_on_inputs(scene: Scene) -> tuple[Effect, ...]:
     for each in moving:
         origin = origin_of(bindings, each.name)
         effects += [
-            delay_of((each.name,), (), f"{DELAY}{each.name}", scene.horizon, origin),
+            delay_of((each.name,), (), scene.horizon, origin),
             _lag(each.name, scene.horizon, origin),
             *_sizes(each, parts[each.name].unit, origin),
         ]
@@ -48,19 +47,35 @@ def effects_on_inputs(scene: Scene) -> tuple[Effect, ...]:
 
 
 def delay_of(
-    inputs: tuple[str, ...], states: tuple[str, ...], label: str, horizon: float, origin: str
+    inputs: tuple[str, ...],
+    states: tuple[str, ...],
+    horizon: float,
+    origin: str,
+    *,
+    topic: str = "",
 ) -> Effect:
     """Inputs that act so many seconds later than logged; states seen so many seconds earlier.
 
-    Of inputs alone it is a dead time, or they are logged late; of states alone a late log.
+    Of inputs alone it is a dead time, or they are logged late; of states alone a late log; of a
+    `topic`, its clock is off.
     """
-    kind = CandidateKind.CLOCK_OFFSET
-    if label.startswith(DELAY):
-        kind = CandidateKind.LATE_LOG if states else CandidateKind.DEAD_TIME
+    kind = CandidateKind.LATE_LOG if states else CandidateKind.DEAD_TIME
+    if topic:
+        kind = CandidateKind.CLOCK_OFFSET
+    names = (*inputs, *states)
     number = Number("delay", SECOND, 0.0, 1e-3 * horizon, -horizon, horizon)
     starts = tuple((sign * share * horizon,) for share in SHIFTS for sign in (1.0, -1.0))
-    apply = _Shift(inputs, states)
-    return Effect(kind, (*inputs, *states), label, (number,), apply, origin, starts)
+    return Effect(
+        kind=kind,
+        applies_to=names,
+        label=f"clock of {topic}" if topic else f"delay of {listed(list(names))}",
+        numbers=(number,),
+        apply=_Shift(inputs, states),
+        origin=origin,
+        starts=starts,
+        subject=topic,
+        is_delay=not topic,
+    )
 
 
 def origin_of(bindings: dict[str, Binding], name: str) -> str:

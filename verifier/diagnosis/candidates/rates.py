@@ -14,6 +14,7 @@ from verifier.diagnosis.altered import Altered, Effect, Number, Values
 from verifier.diagnosis.candidates.inputs import LAGS, LIMITS, SECOND, SHIFTS, ZONES
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.loosened import TIME_SCALE, gain_of, given_of, is_given_of, offset_of
+from verifier.diagnosis.part_units import unit_of
 from verifier.diagnosis.scene import Scene
 from verifier.diagnosis.smoothed import Smoothed, rates_of, smoothed, values_of
 from verifier.diagnosis.wraps import Wrap, wraps_of
@@ -24,11 +25,10 @@ def effects_on_rates(scene: Scene) -> tuple[Effect, ...]:
     """Of every driven state's rate, and of the differences in its formula."""
     along = smoothed(scene)
     effects = []
-    units = {state.name: state.unit for state in scene.program.states}
     for wrap in wraps_of(scene.program):
         most = float(np.nanmax(np.abs(values_of(scene, along, wrap.code)), initial=0.0))
         if most > 0.0:
-            effects += _sizes(wrap, most, _unit(wrap, units), scene.program.field.origin)
+            effects += _sizes(wrap, most, unit_of(wrap, scene.program), scene.program.field.origin)
     if scene.program.field.is_map:
         return tuple(effects)
     found = rates_of(scene, along, scene.plain)
@@ -38,14 +38,6 @@ def effects_on_rates(scene: Scene) -> tuple[Effect, ...]:
         if is_driven and scene.flow.moves[each.column] and np.ptp(rate) > 0.0:
             effects += _late(scene, each.name, each.column, along)
     return tuple(effects)
-
-
-def _unit(wrap: Wrap, units: dict[str, Unit]) -> Unit:
-    """Of a rate per second; of a difference, that of the first state in it."""
-    unit = units[wrap.name]
-    if wrap.is_whole:
-        return Unit(f"{unit.text}/s", unit.scale)
-    return next((units[token] for token in wrap.code.tokens if token in units), Unit("1", 1.0))
 
 
 def _sizes(wrap: Wrap, most: float, unit: Unit, origin: str) -> list[Effect]:
@@ -63,6 +55,7 @@ def _sizes(wrap: Wrap, most: float, unit: Unit, origin: str) -> list[Effect]:
             _Entry(wrap.limit),
             origin,
             limits,
+            subject=wrap.words,
         ),
         Effect(
             CandidateKind.DEAD_ZONE,
@@ -72,6 +65,7 @@ def _sizes(wrap: Wrap, most: float, unit: Unit, origin: str) -> list[Effect]:
             _Entry(wrap.zone),
             origin,
             zones,
+            subject=wrap.words,
         ),
     ]
 
@@ -91,6 +85,7 @@ def _late(scene: Scene, name: str, column: int, along: Smoothed) -> list[Effect]
             origin,
             tuple((share * horizon,) for share in SHIFTS),
             stands_in=True,
+            subject=f"the rate of {name}",
         ),
         Effect(
             CandidateKind.LAG,
@@ -101,6 +96,7 @@ def _late(scene: Scene, name: str, column: int, along: Smoothed) -> list[Effect]
             origin,
             tuple((share * horizon,) for share in LAGS),
             stands_in=True,
+            subject=f"the rate of {name}",
         ),
     ]
 

@@ -27,7 +27,7 @@ FEW: Final = 4
 class Reading:
     """The trace read otherwise. factor, offset: what mends each of `applies_to`, if that does it.
 
-    words: what the log is, as a clause.
+    words: what the log is, as a clause. slip: of units, in words.
     """
 
     kind: CandidateKind
@@ -37,6 +37,7 @@ class Reading:
     factor: float
     offset: float
     trace: Trace
+    slip: str = ""
 
 
 def readings_of(program: Program, needs: Needs, trace: Trace) -> tuple[Reading, ...]:
@@ -90,9 +91,16 @@ def _in_units(
 
 def _slipped(trace: Trace, names: tuple[str, ...], slip: Slip) -> Reading:
     label = f"{slip.words} in {' and '.join(names)}"
-    other = _affine(trace, names, slip.factor, slip.offset)
-    kind = CandidateKind.UNIT_SLIP
-    return Reading(kind, names, label, f"the log has {label}", slip.factor, slip.offset, other)
+    return Reading(
+        kind=CandidateKind.UNIT_SLIP,
+        applies_to=names,
+        label=label,
+        words=f"the log has {label}",
+        factor=slip.factor,
+        offset=slip.offset,
+        trace=_affine(trace, names, slip.factor, slip.offset),
+        slip=slip.words,
+    )
 
 
 def _swapped(program: Program, trace: Trace, states: list[str]) -> list[Reading]:

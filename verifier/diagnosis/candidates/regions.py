@@ -110,6 +110,7 @@ def _effect(scene: Scene, along: Smoothed, spot: _Spot, *, is_fixed: bool) -> Ef
         apply=_Beyond(offset_of(spot.rate), begins, values, spot.border, SIDES[spot.side], ramp),
         origin=scene.program.field.origin,
         best_of=1 if is_fixed else len(BORDERS) * len(SIDES),
+        detail="above" if SIDES[spot.side] > 0.0 else "below",
     )
 
 

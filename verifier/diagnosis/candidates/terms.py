@@ -115,6 +115,7 @@ def _effect(scene: Scene, along: Smoothed, term: _Term) -> Effect:
         apply=_Add(offset_of(term.state.name), Course(begins, term.shape)),
         origin=scene.program.field.origin,
         best_of=len(POWERS),
+        detail=term.words,
     )
 
 
