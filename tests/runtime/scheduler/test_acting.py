@@ -9,7 +9,7 @@ import pytest
 from runtime.arbiter import Arbiter, Paradigm, Read, Rule
 from runtime.architecture import Way
 from runtime.code import Code
-from runtime.program import Kind, Role
+from runtime.program import Kind, Noise, Program, Role
 from runtime.scheduler.scheduler import Scheduler
 from runtime.user_code import UserCodeError
 from tests.runtime.behaviors import formula_program, state
@@ -220,3 +220,40 @@ def test_code_of_the_users_own_is_not_run_without_permission() -> None:
 
     with pytest.raises(UserCodeError, match="--allow-code"):
         speeds(nodes, Way.SINGLE, 1)
+
+
+def own_clock() -> Program:
+    """A clock of its own, t' = 1 with some noise on u, that commands channel x."""
+    program = formula_program(
+        (
+            replace(state("t", 0.0, 9.0), role=Role.DRIVEN, hold=0.0),
+            replace(state("u", -BIG, BIG), role=Role.DRIVEN, hold=0.0),
+            replace(state("x", -BIG, BIG), role=Role.SENSED),
+        ),
+        {"t": "1", "u": "0"},
+    )
+    return replace(program, noise=(Noise("u", Code("1"), HERE),))
+
+
+def test_own_states_of_parts_stand_still_while_the_combined_behavior_acts() -> None:
+    part = N("part", own_clock(), STEP, 0.0, {"x": "pos.x"}, {"x": ("t", "rate")})
+    both = replace(seek("both", 5.0), acts_when="x 3 lt", replaces=("part",))
+
+    values, noted = speeds([part, both], Way.EXCLUSIVE, 7)
+
+    times = [float(tick.register[0]) for _, tick in noted.of(0)]
+    assert values == [5.0, 5.0, 5.0, 1.0, 1.0, 1.0, 1.0]
+    # At instant 3 it ticks before the combined behavior does, which says there that it stops.
+    steps = np.diff(times) / STEP
+    np.testing.assert_allclose(steps[1:], [0, 0, 0, 1, 1], atol=1e-9)
+
+
+def test_what_chance_gives_a_node_does_not_depend_on_who_inhibits_it() -> None:
+    roam = N("roam", own_clock(), STEP, 0.0, {"x": "pos.x"}, {"x": ("u", "rate")})
+    decides = chooser("choose", EARLY_OR_LATE, {"early": [], "late": ["roam"]})
+
+    _, free = speeds([roam], Way.SINGLE, 8)
+    _, kept = speeds([decides, roam], Way.SINGLE, 8)
+
+    rates = [[float(tick.commands[0]) for _, tick in run] for run in (free.of(0), kept.of(1))]
+    assert rates[0] == rates[1]
