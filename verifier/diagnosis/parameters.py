@@ -9,6 +9,7 @@ from runtime.program import Binding, Kind, Program, State, Unit
 from verifier.diagnosis.altered import Altered, Effect, Number, Values
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.loosened import ONE, TIME_SCALE, gain_of, offset_of
+from verifier.diagnosis.part_units import per_second
 from verifier.fidelity.stretches.needs import Input, Needs, names_read, parts_of
 from verifier.mixed_units import Slip, alternatives, unit_read
 from verifier.report.diagnosis import CandidateKind, ParameterKind
@@ -231,9 +232,7 @@ def _of_rate(program: Program, state: State) -> list[Parameter]:
     if program.field.is_map and program.field.formula is None:
         return []
     kinds = (ParameterKind.RATE_GAIN, ParameterKind.RATE_OFFSET)
-    text = state.unit.text if state.unit.text != "1" else ""
-    per_second = Unit(f"{text or '1'}/s", state.unit.scale)
-    unit = state.unit if program.field.is_map else per_second
+    unit = state.unit if program.field.is_map else per_second(state.unit)
     width = 0.1 * (state.high - state.low)
     gain, offset = _pair(kinds, state.name, unit, width, program.field.origin)
     return [replace(gain, slips=tuple(s for s in alternatives(state.unit) if s.is_classic)), offset]

@@ -11,11 +11,12 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array
-from runtime.program import Kind, Unit
+from runtime.program import Kind
 from verifier.diagnosis.altered import Altered, Effect, Number, Values
 from verifier.diagnosis.courses import Course
 from verifier.diagnosis.fitting import plain_fit
 from verifier.diagnosis.loosened import offset_of
+from verifier.diagnosis.part_units import per_second
 from verifier.diagnosis.scene import Scene
 from verifier.diagnosis.selection import forecasts
 from verifier.diagnosis.smoothed import Smoothed, smoothed
@@ -95,9 +96,7 @@ def _effect(scene: Scene, along: Smoothed, spot: _Spot, *, is_fixed: bool) -> Ef
     parts = parts_of(scene.program)
     (rate,) = (s for s in scene.program.states if s.name == spot.rate)
     width = rate.high - rate.low
-    text = "1" if rate.unit.text in {"", "1"} else rate.unit.text
-    unit = Unit(f"{text}/s", rate.unit.scale)
-    offset = Number("offset", unit, 0.0, 1e-5 * width, -10.0 * width, 10.0 * width)
+    offset = Number("offset", per_second(rate.unit), 0.0, 1e-5 * width, -10.0 * width, 10.0 * width)
     ramp = RAMP * (spot.high - spot.low)
     edge = Number("border", parts[spot.name].unit, spot.border, 0.5 * ramp, spot.low, spot.high)
     values = along.register[:, spot.column]
