@@ -8,8 +8,9 @@ from typing import Final
 
 from runtime.program import Program
 from specc.fitting.aims import Aim, Aims, AnyAim
-from specc.fitting.readings import OF_INPUTS, OF_SENSORS, affine, delays, mended
+from specc.fitting.readings import OF_INPUTS, affine, delays, mended
 from verifier.report.diagnosis import (
+    OF_SENSORS,
     Candidate,
     CandidateKind,
     Diagnosis,

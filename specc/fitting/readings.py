@@ -11,7 +11,6 @@ from verifier.mixed_units import alternatives, unit_read
 from verifier.report.diagnosis import Candidate, CandidateKind, ParameterKind, Refitted
 
 OF_INPUTS: Final = (ParameterKind.INPUT_GAIN, ParameterKind.INPUT_OFFSET)
-OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
 
 
 def delays(late: Sequence[Candidate], bindings: dict[str, Binding]) -> list[Aim | str]:

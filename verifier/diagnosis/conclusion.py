@@ -6,13 +6,13 @@ from verifier.diagnosis import sentences
 from verifier.diagnosis.naming import label_of
 from verifier.diagnosis.selection import PLIANT, Selection, Step, Tried
 from verifier.report.diagnosis import (
+    OF_SENSORS,
     Candidate,
     CandidateKind,
     DepartureAfter,
     Diagnosis,
     DifferingRegion,
     FittedNumber,
-    ParameterKind,
     Refitted,
     Told,
 )
@@ -22,9 +22,9 @@ SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIA
 
 CLEARLY: Final = 0.25
 """A departure that is surely beyond this share of its tolerance is told, though it is allowed."""
-OF_SENSORS: Final = (ParameterKind.SENSOR_OFFSET, ParameterKind.SENSOR_SCALE)
 LONG: Final = 3
 """So many explanations, or more, deserve doubt."""
+AS_GOOD: Final = "several explanations are as good; the first is"
 MISREAD: Final = "the log is not what the spec takes it for:"
 LONG_CHAIN: Final = (
     "no single candidate explains it; together these do, but one cause that was not tried can look"
@@ -117,8 +117,9 @@ def _in_other_words(step: Step, candidates: tuple[Candidate, ...], *, is_only: b
 
 
 def _rank(tried: Tried) -> int:
+    """Offsets of sensors, then their scales, then all else."""
     kind = tried.effect.parameter
-    return OF_SENSORS.index(kind) if kind in OF_SENSORS else len(OF_SENSORS)
+    return -OF_SENSORS.index(kind) if kind in OF_SENSORS else 1
 
 
 def _said(tried: Tried) -> str:
@@ -141,18 +142,23 @@ def _opening(
     told: Told, share: float, taken: list[Candidate], *, is_over: bool, is_passed: bool
 ) -> str:
     """is_over: something still departs by more than is allowed. is_passed: nothing ever did."""
-    names = ", ".join(each.label for each in taken)
+    labels = [each.label for each in taken]
     is_long = len(taken) >= LONG and told is Told.STRUCTURE_DIFFERS
     cases = (
         (share < PARTLY, "no candidate explains the departure well; the best is"),
         (is_over, "no candidate explains all of the departure; the best is"),
-        (told is Told.CANNOT_TELL, "several explanations are as good; the first is"),
+        (told is Told.CANNOT_TELL, AS_GOOD),
         (is_passed, "what differs is allowed; it would be less with"),
         (is_long, LONG_CHAIN),
-        (told is Told.SAME_STRUCTURE, "same structure, other numbers:"),
     )
-    said = next((words for holds, words in cases if holds), "the structure differs:")
-    return f"{said} {names}"
+    said = next((words for holds, words in cases if holds), "")
+    return f"{said} {', '.join(labels)}" if said else opening(told, labels)
+
+
+def opening(told: Told, labels: list[str]) -> str:
+    """The first sentence where what is named explains all."""
+    words = {Told.SAME_STRUCTURE: "same structure, other numbers:", Told.CANNOT_TELL: AS_GOOD}
+    return f"{words.get(told, 'the structure differs:')} {', '.join(labels)}"
 
 
 def _unexplained(

@@ -12,6 +12,7 @@ import numpy as np
 
 from runtime.program import Fidelity, Program, Unit
 from verifier.diagnosis import sentences
+from verifier.diagnosis.conclusion import opening
 from verifier.fidelity.stretches.needs import Needs, mode_of, parts_of
 from verifier.fidelity.switching.judge import FEWEST, judged_changes
 from verifier.fidelity.switching.setting import setting_of
@@ -24,6 +25,7 @@ from verifier.fidelity.switching.thresholds import (
     thresholds_of,
 )
 from verifier.report.diagnosis import (
+    OF_SENSORS,
     Candidate,
     CandidateKind,
     Diagnosis,
@@ -38,7 +40,6 @@ from verifier.report.switching import Way
 from verifier.report.wording import listed, number, suffix
 
 PLAIN: Final = (Told.NO_DIFFERENCE, Told.SAME_STRUCTURE)
-OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
 
 
 def with_guards(
@@ -99,9 +100,7 @@ def _opening(told: Told, mended: Mended, labels: list[str]) -> str:
         return "the structure differs in when the robot switches"
     if mended.unmended:
         return "this trace does not tell why the robot switches at other times than the spec"
-    if told is Told.CANNOT_TELL:
-        return f"several explanations are as good; the first is {listed(labels)}"
-    return f"same structure, other numbers: {listed(labels)}"
+    return opening(told, labels)
 
 
 def _as_good(program: Program, ways: Sequence[Way], group: tuple[Threshold, ...]) -> str:

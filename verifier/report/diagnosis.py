@@ -5,7 +5,7 @@ SI throughout; a `Unit` says how people read a number. Intervals are at the repo
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import final
+from typing import Final, final
 
 from runtime.program import Unit
 from verifier.report.report import Interval, RegionMean, Standing
@@ -45,6 +45,9 @@ class ParameterKind(StrEnum):
     INPUT_OFFSET = "offset of an input"
     SENSOR_SCALE = "scale of a sensor"
     SENSOR_OFFSET = "offset of a sensor"
+
+
+OF_SENSORS: Final = (ParameterKind.SENSOR_SCALE, ParameterKind.SENSOR_OFFSET)
 
 
 @final
