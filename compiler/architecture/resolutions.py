@@ -84,18 +84,29 @@ def _resolved(reach: Reach, parts: Parts, wiring: Wiring | None, findings: Findi
     if not all(part.is_known for part in parts.nodes.values()):
         return alone  # who else reaches it is not known
     if spec is None:
-        return _unresolved(reach, parts, alone, findings)
+        return _unresolved(reach, parts, wiring, alone, findings)
     found = _declared(spec, reach, parts, wiring, path, findings)
     if found is not None and found.way in ALIKE:
         _check_alike(reach, path, findings)
     return found or alone
 
 
-def _unresolved(reach: Reach, parts: Parts, alone: Resolution, findings: Findings) -> Resolution:
+def _unresolved(
+    reach: Reach, parts: Parts, wiring: Wiring | None, alone: Resolution, findings: Findings
+) -> Resolution:
     """What holds without a declaration: a combined behavior acts in the place of its parts."""
-    open_pairs = conflicts(reach.nodes, parts)
+    pairs = conflicts(reach.nodes, parts)
+    combined = {name: set(parts.nodes[name].spec.replaces) for name in reach.nodes}
+    open_pairs = [p for p in pairs if not any(set(p) <= many for many in combined.values())]
     if not open_pairs:
-        proof = "where they would act at once, a combined behavior acts instead"
+        if wiring is None:
+            return alone  # what acts when is not known
+        answer = exclusion_of(wiring, [(parts.index(a), parts.index(b)) for a, b in pairs])
+        if not answer.is_proved:
+            name = next(name for name in reach.nodes if combined[name])
+            findings.error("S345", ("nodes", name, "replaces"), answer.sentence, answer.help)
+            return alone
+        proof = answer.sentence or "a combined behavior acts in the place of the other"
         return Resolution(Way.EXCLUSIVE, _ordered(reach.nodes, parts), -1, "", proof, alone.origin)
     first, second = open_pairs[0]
     message = f"{first} and {second} both act on '{reach.port.name}'"
@@ -134,13 +145,9 @@ def conflicts(nodes: tuple[str, ...], parts: Parts) -> list[tuple[str, str]]:
 
 
 def _replaced(name: str, part: Part) -> Iterator[tuple[str, str]]:
-    """The pairs that a combined behavior of two parts keeps apart: them, and it from each."""
-    if not part.spec.replaces:
-        return
+    """The pairs that never act at once: a combined behavior, and each of its parts."""
     for other in part.spec.replaces:
         yield name, other
-    if len(part.spec.replaces) == 2:
-        yield part.spec.replaces[0], part.spec.replaces[1]
 
 
 def _declared(

@@ -53,7 +53,11 @@ class Wiring:
 
 def question_of(wiring: Wiring, first: int, second: int) -> Question:
     """Whether the nodes `first` and `second` ever act at once."""
-    needs = [_needs(wiring, place) for place in (first, second)]
+    combined = [
+        place for place, node in enumerate(wiring.nodes) if {first, second} & set(node.replaces)
+    ]
+    who = [first, second, *combined]
+    needs = [_needs(wiring, place) for place in who]
     used = sorted({place for many in needs for need in many for place, _ in need})
     deciders = [_decider(wiring, place) for place in used]
     read = sorted({e.signal for one in deciders for e in one.entries if e.signal >= 0})
@@ -62,13 +66,14 @@ def question_of(wiring: Wiring, first: int, second: int) -> Question:
         Actor(
             wiring.nodes[place].name, tuple(tuple((used.index(d), o) for d, o in n) for n in many)
         )
-        for place, many in zip((first, second), needs, strict=True)
+        for place, many in zip(who, needs, strict=True)
     ]
     return Question(
         signals=tuple(signals[place] for place in read),
         deciders=tuple(_renumbered(one, read) for one in deciders),
         first=actors[0],
         second=actors[1],
+        unless=tuple(actors[2:]),
     )
 
 

@@ -13,7 +13,7 @@ from typing import Final, TypeAlias, final
 
 from compiler.architecture.exclusion.answer import Answer, Proof, Undecided, Witness
 from compiler.architecture.exclusion.conditions import Sampled, has_memory
-from compiler.architecture.exclusion.formula import Formula, both, either, holds
+from compiler.architecture.exclusion.formula import Formula, both, denied, either, holds
 from compiler.architecture.exclusion.overlap import Instant, Timing, instants, timing_of
 from compiler.architecture.exclusion.question import Actor, How, Outcome, Question
 from compiler.architecture.exclusion.reach import Reached, reached
@@ -100,8 +100,8 @@ def _ways(question: Question) -> Iterator[Picks]:
 
 
 def _outcomes(question: Question) -> set[Outcome]:
-    needs = (*question.first.needs, *question.second.needs)
-    return {outcome for need in needs for outcome in need}
+    actors = (question.first, question.second, *question.unless)
+    return {outcome for actor in actors for need in actor.needs for outcome in need}
 
 
 def _structure(question: Question) -> str:
@@ -119,8 +119,11 @@ def _structure(question: Question) -> str:
 
 
 def _conditions(question: Question) -> str:
-    who = listed([d.name for d in question.deciders if not is_plain(d)], last="and")
     first, second = question.first.name, question.second.name
+    if question.unless:
+        instead = listed([one.name for one in question.unless])
+        return f"where {first} and {second} would both act, {instead} acts in their place"
+    who = listed([d.name for d in question.deciders if not is_plain(d)], last="and")
     return f"by the conditions of {who}, {first} and {second} never act at once"
 
 
@@ -166,7 +169,8 @@ class _Case:
     def formula(self) -> Formula:
         """Where both act."""
         held = [self._picked(place, outcome) for place, outcome in self.picks.items()]
-        return both((*held, self._acts(self.question.first), self._acts(self.question.second)))
+        both_act = self._acts(self.question.first), self._acts(self.question.second)
+        return both((*held, *both_act, *(denied(self._acts(one)) for one in self.question.unless)))
 
     def variables(self) -> dict[str, Variable]:
         """What all names may be."""
@@ -235,7 +239,12 @@ class _Case:
 
     def _picked(self, place: int, outcome: int) -> Formula:
         sampled = self.sampled(place)
-        return True if sampled is None or outcome < 0 else sampled.outcome(outcome)
+        if sampled is None:
+            return True
+        if outcome >= 0:
+            return sampled.outcome(outcome)
+        used = sorted(o for d, o in _outcomes(self.question) if d == place)
+        return both(denied(sampled.outcome(o)) for o in used if sampled.decider.how is How.FIRST)
 
 
 APART: Final = (

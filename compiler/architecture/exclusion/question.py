@@ -119,9 +119,13 @@ class Actor:
 @final
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Can `first` and `second` act at one instant?"""
+    """Can `first` and `second` act at one instant?
+
+    unless: combined behaviors that act in the place of one of them, where they would act.
+    """
 
     signals: tuple[Signal, ...]
     deciders: tuple[Decider, ...]
     first: Actor
     second: Actor
+    unless: tuple[Actor, ...] = ()

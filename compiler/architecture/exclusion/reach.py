@@ -16,13 +16,14 @@ from compiler.architecture.exclusion.answer import Moment, Proof, Undecided
 from compiler.architecture.exclusion.conditions import SHORT, Sampled, remembers
 from compiler.architecture.exclusion.formula import Formula, both, denied, holds
 from compiler.architecture.exclusion.overlap import Timing
-from compiler.architecture.exclusion.question import Decider, How, Outcome, Question
+from compiler.architecture.exclusion.question import Actor, Decider, How, Outcome, Question
 from compiler.architecture.exclusion.search import Found, Open, solve
 from compiler.architecture.exclusion.witness import Decision, moments
 from spec_schema.wording import listed
 
-MOST_STATES: Final = 30_000
+MOST_TRIED: Final = 100_000
 MOST_PATTERNS: Final = 256
+BUDGET: Final = 300
 
 Memory: TypeAlias = tuple[int, ...]
 """For each rule how many ticks it has held, -1 where it does not; no further than matters."""
@@ -80,10 +81,11 @@ def reached(question: Question, timing: Timing) -> Reached | Proof | Undecided:
 class _Visit:
     def __init__(self, question: Question, timing: Timing) -> None:
         self._question, self._timing = question, timing
-        needs = (*question.first.needs, *question.second.needs)
-        self._used = sorted({d for need in needs for d, _ in need})
+        actors = (question.first, question.second, *question.unless)
+        self._used = sorted({d for actor in actors for need in actor.needs for d, _ in need})
         self._patterns: dict[tuple[int, ...], list[_Pattern]] = {}
         self._is_open = False
+        self._tried = 0
         self._steps: list[_Step] = []
 
     def run(self) -> Reached | Proof | Undecided:
@@ -98,15 +100,17 @@ class _Visit:
             phase = phases.index(at % turn)
             lasts = (phases[phase + 1] if phase + 1 < len(phases) else phases[0] + turn) - at % turn
             for after, step in self._after(at, before, parent):
-                self._steps.append(step)
+                self._tried += 1
                 if self._both_act(after):
+                    self._steps.append(step)
                     found = self._told(at)
                     return found if self._is_told(found) else self._slow()
                 key = ((phase + 1) % len(phases), _waited(after, lasts))
                 if key not in seen:
                     seen.add(key)
+                    self._steps.append(step)
                     queue.append((at + lasts, key[1], len(self._steps) - 1))
-            if len(seen) > MOST_STATES or self._is_open:
+            if self._tried > MOST_TRIED or self._is_open:
                 return self._open()
         names = [self._question.deciders[d].name for d in self._used]
         reason = (
@@ -161,7 +165,7 @@ class _Visit:
         while waiting:
             bits, found = waiting.pop()
             if found is None or not holds(_together(flat, bits), found.values):
-                answer = solve(_together(flat, bits), variables)
+                answer = solve(_together(flat, bits), variables, BUDGET)
                 self._is_open |= isinstance(answer, Open)
                 if not isinstance(answer, Found):
                     continue
@@ -177,10 +181,13 @@ class _Visit:
 
     def _both_act(self, now: tuple[_One, ...]) -> bool:
         held = {d: one.held for d, one in zip(self._used, now, strict=True)}
-        actors = (self._question.first, self._question.second)
-        return all(
-            any(held[d] >> o & 1 for d, o in need) for actor in actors for need in actor.needs
-        )
+
+        def acts(actor: Actor) -> bool:
+            return all(any(held[d] >> o & 1 for d, o in need) for need in actor.needs)
+
+        question = self._question
+        replaced = any(map(acts, question.unless))
+        return acts(question.first) and acts(question.second) and not replaced
 
     def _told(self, at: int) -> Reached:
         path: list[_Step] = []

@@ -166,6 +166,10 @@ def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
 
 def _help(question: Question, decisions: list[Decision]) -> str:
     """What would mend it."""
+    if question.unless:
+        who = listed([actor.name for actor in question.unless])
+        parts = f"{question.first.name} and {question.second.name}"
+        return f"let {who} act at all times that {parts} do, and answer no later than both"
     free = [
         actor.name
         for actor in (question.first, question.second)

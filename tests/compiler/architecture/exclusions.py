@@ -238,6 +238,9 @@ def cases(draw: st.DrawFn) -> Case:
     if shape == "above":
         above = {"x": ("left",), "y": ("right",)}
         nodes.append(replace(made("top", draw(arbiters()), choices=above), level=2))
+    if draw(st.integers(0, 3)) == 0:
+        combined = made("both", behavior(), acts_when=draw(when), replaces=("first", "second"))
+        nodes.append(combined)
     rate = st.sampled_from([(1, 0), (1, 0), (2, 0), (3, 1)])
     return wired(nodes, (draw(rate), draw(rate)))
 

@@ -92,6 +92,9 @@ PROVED: dict[str, Case] = {
         [acting("first", NEAR, period=2 * STEP), acting("second", FAR_OFF)], ((4, 0), (1, 0))
     ),
 }
+PROVED["a combined behavior in the place of both"] = wired(
+    [acting("first", NEAR), acting("second"), acting("both", replaces=("first", "second"))]
+)
 REFUTED: dict[str, Case] = {
     "conditions that touch": wired([acting("first", "p 0.5 le"), acting("second", FAR_OFF)]),
     "other response times": wired([acting("first", NEAR), acting("second", FAR_OFF, **APART)]),
@@ -126,6 +129,28 @@ REFUTED: dict[str, Case] = {
             acting("second"),
             choosing("left", HYSTERESIS, ONLY_FLEE),
             choosing("right", [(0, "p 0.5 lt", "p 0.75 gt", 0.0), HYSTERESIS[1]], ONLY_GO),
+        ]
+    ),
+    "a combined behavior that answers later": wired(
+        [
+            acting("first", NEAR),
+            acting("second"),
+            acting("both", response=STEP, replaces=("first", "second")),
+        ]
+    ),
+    "a combined behavior that does not always act": wired(
+        [
+            acting("first", NEAR),
+            acting("second"),
+            acting("both", "p 0.25 gt", replaces=("first", "second")),
+        ]
+    ),
+    "a combined behavior of three, of which two act": wired(
+        [
+            acting("first", NEAR),
+            acting("second"),
+            acting("third", "p 0.25 lt"),
+            acting("both", replaces=("first", "second", "third")),
         ]
     ),
     "rules of one arbiter that answer at other times": wired(
