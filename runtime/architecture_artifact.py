@@ -7,17 +7,19 @@ without the compiler.
 
 import dataclasses
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final, final
 
 from runtime import artifact
 from runtime.arbiter import Arbiter
-from runtime.architecture import Architecture
+from runtime.architecture import Architecture, Node
 from runtime.arrays import Array
+from runtime.code import Code
 from runtime.container import ArtifactError, Member, join, split
 from runtime.program import Program
 from runtime.program_json import from_plain, to_plain
+from runtime.tape import check_code
 from runtime.world.model import Body
 
 FORMAT: Final = 1
@@ -94,30 +96,59 @@ def is_architecture(data: bytes) -> bool:
 
 def faults(architecture: Architecture, body: Body) -> Iterator[str]:
     """What in an architecture points to what there is not, each in a sentence."""
-    signals, nodes = len(architecture.board), len(architecture.nodes)
+    nodes = len(architecture.nodes)
     if architecture.body != body.name:
         yield f"it drives '{architecture.body}', not '{body.name}'"
     if sorted(architecture.order) != list(range(nodes)):
         yield "its order does not name each node once"
     for node in architecture.nodes:
-        places = [(wire.signal, signals) for wire in node.inputs if wire.signal >= 0]
-        places += [(place, signals) for place in node.outputs]
-        places += [(command.channel, len(architecture.channels)) for command in node.commands]
-        places += [(place, nodes) for choice in node.choices for place in choice.acts]
-        places += [(one.node, nodes) for choice in node.choices for one in choice.sets]
-        places += [(place, nodes) for place in node.replaces]
-        places += [(node.behavior, len(architecture.programs))] if node.behavior >= 0 else []
-        places += [(node.arbiter, len(architecture.arbiters))] if node.arbiter >= 0 else []
-        if any(not 0 <= place < count for place, count in places):
-            yield f"the node '{node.name}' points to what there is not"
-        if not (node.period > 0.0 and node.response_time >= 0.0):
-            yield f"the node '{node.name}' has no period"
+        yield from _of_node(node, architecture)
+    for arbiter in architecture.arbiters:
+        yield from _unreadable(arbiter.name, _codes(arbiter), arbiter.register)
     for channel in architecture.channels:
         resolution = channel.resolution
         if any(not 0 <= place < nodes for place in resolution.nodes):
             yield f"the channel '{channel.name}' is resolved between nodes that there are not"
         if not -1 <= resolution.arbiter < nodes:
             yield f"the channel '{channel.name}' is resolved by a node that there is not"
+
+
+def _of_node(node: Node, architecture: Architecture) -> Iterator[str]:
+    signals, nodes = len(architecture.board), len(architecture.nodes)
+    places = [(wire.signal, signals) for wire in node.inputs if wire.signal >= 0]
+    places += [(place, signals) for place in node.outputs]
+    places += [(command.channel, len(architecture.channels)) for command in node.commands]
+    places += [(place, nodes) for choice in node.choices for place in choice.acts]
+    places += [(one.node, nodes) for choice in node.choices for one in choice.sets]
+    places += [(place, nodes) for place in node.replaces]
+    places += [(node.behavior, len(architecture.programs))] if node.behavior >= 0 else []
+    places += [(node.arbiter, len(architecture.arbiters))] if node.arbiter >= 0 else []
+    if any(not 0 <= place < count for place, count in places):
+        yield f"the node '{node.name}' points to what there is not"
+    if node.acts_when is not None and 0 <= node.behavior < len(architecture.programs):
+        register = architecture.programs[node.behavior].register
+        yield from _unreadable(node.name, [node.acts_when], register)
+    if not (node.period > 0.0 and node.response_time >= 0.0):
+        yield f"the node '{node.name}' has no period"
+
+
+def _codes(arbiter: Arbiter) -> Iterator[Code]:
+    """All code of an arbiter that the runtime runs."""
+    yield from (output.code for output in arbiter.outputs)
+    yield from arbiter.weights
+    for rule in arbiter.rules:
+        yield from (code for code in (rule.when, rule.until) if code is not None)
+    if arbiter.competition is not None:
+        yield from arbiter.competition.advantage
+        yield from (code for row in arbiter.competition.suppression for code in row)
+
+
+def _unreadable(name: str, codes: Iterable[Code], register: tuple[str, ...]) -> Iterator[str]:
+    for code in codes:
+        try:
+            check_code(code, register)
+        except ValueError as problem:
+            yield f"code of '{name}' can't be run: {problem}"
 
 
 def _name(place: int) -> str:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path as FilePath
-from typing import final
+from typing import Final, final
 
 from spec_schema.characters import LARGEST, decode, too_large
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError, first_ones
@@ -15,6 +15,16 @@ from spec_schema.shape import check_shape
 from spec_schema.source import Source, Span
 from spec_schema.suggest import did_you_mean, nearest
 from spec_schema.yaml_reader import read
+
+TELLING: Final = {
+    "project": {"specs", "traces"},
+    "architecture": {"nodes", "channels"},
+    "arbiter": {"reads", "choices", "by"},
+    "body": {"drive", "sensors", "mass"},
+    "world": {"arena", "things", "lights", "scatter"},
+    "scenario": {"world", "robots", "duration", "require"},
+}
+"""Keys that tell the kind of a spec that does not say it."""
 
 
 @final
@@ -133,8 +143,8 @@ def _model_of(data: dict[str, Plain]) -> type[AnySpec]:
     """The model that the document is meant for, even where it does not say so."""
     kind = data.get("kind")
     meant = nearest(kind, MODELS) if isinstance(kind, str) else None
-    looks_like = "project" if {"specs", "traces"} & data.keys() else "behavior"
-    return MODELS[meant or looks_like]
+    looks_like = (kind for kind, keys in TELLING.items() if keys & data.keys())
+    return MODELS[meant or next(looks_like, "behavior")]
 
 
 def _diagnostic(places: Places, mistake: Mistake) -> Diagnostic:

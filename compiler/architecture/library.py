@@ -9,6 +9,7 @@ from typing import TypeAlias, final
 from compiler.assemble import assembled
 from compiler.check_behavior import check_behavior
 from compiler.findings import Findings
+from runtime.arbiter import Arbiter
 from runtime.program import Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
@@ -48,13 +49,18 @@ def checked_only(loaded: Loaded, spec: BehaviorSpec) -> Behavior:
 
 @final
 class Library:
-    """All files that were named so far, and everything that is wrong in them."""
+    """All files that were named so far, and everything that is wrong in them.
+
+    Attributes:
+        arbiters: by file those that were compiled, None where one can't be used.
+    """
 
     def __init__(self, compiler: Compiler = checked_only) -> None:
         self._compiler = compiler
         self._examined: dict[FilePath, Examined | None] = {}
         self._behaviors: dict[FilePath, Behavior | None] = {}
         self._wrong: dict[FilePath, tuple[Diagnostic, ...]] = {}
+        self.arbiters: dict[str, Arbiter | None] = {}
 
     @property
     def mistakes(self) -> tuple[Diagnostic, ...]:

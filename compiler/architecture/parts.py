@@ -139,10 +139,13 @@ def _arbiter(
     found = library.spec(loaded, path, text, "arbiter", findings)
     if found is None or not isinstance(found.spec, ArbiterSpec):
         return None
-    own = Findings(found)
-    arbiter = lower_arbiter(found.spec, found, library, own)
-    library.refuse(found, own.diagnostics)
-    return None if own.has_errors else arbiter
+    file = found.source.name
+    if file not in library.arbiters:
+        own = Findings(found)
+        arbiter = lower_arbiter(found.spec, found, library, own)
+        library.refuse(found, own.diagnostics)
+        library.arbiters[file] = None if own.has_errors else arbiter
+    return library.arbiters[file]
 
 
 def _deciding(part: Part, arbiter: Arbiter | None) -> Part:

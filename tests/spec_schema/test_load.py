@@ -244,3 +244,25 @@ def test_any_value_in_any_place_is_loaded_or_explained(data: st.DataObject) -> N
         key = lines[number].split(":")[0]
         lines[number] = f"{key}: {data.draw(st.sampled_from(VALUES))}"
     check_anything("\n".join(lines))
+
+
+@pytest.mark.parametrize(
+    ("keys", "kind"),
+    [
+        ("nodes: {}", "architecture"),
+        ("arena: {box: [1, 1]}", "world"),
+        ("drive: {}", "body"),
+        ("by: {}", "arbiter"),
+        ("robots: {}", "scenario"),
+        ("state: {}", "behavior"),
+    ],
+)
+def test_a_spec_without_its_kind_is_taken_for_what_its_keys_tell(keys: str, kind: str) -> None:
+    text = f"specc: 1\nname: tried\n{keys}\n"
+
+    with pytest.raises(SpecError) as caught:
+        load_source(Source("spec.yaml", text))
+
+    said = [f"{found.message} {found.help}" for found in caught.value.diagnostics]
+    assert any("'kind' is missing" in one and kind in one for one in said)
+    assert not any("unknown key" in one for one in said)
