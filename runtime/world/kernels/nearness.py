@@ -16,15 +16,16 @@ def to_edge(x: float, y: float, edges: Array, row: int) -> float:
     along = 0.0
     if length > 0.0:
         along = min(max(((x - ax) * dx + (y - ay) * dy) / length, 0.0), 1.0)
-    return (ax + along * dx - x) ** 2 + (ay + along * dy - y) ** 2
+    away: float = (ax + along * dx - x) ** 2 + (ay + along * dy - y) ** 2
+    return away
 
 
 @inlined
 def side(x: float, y: float, edges: Array, row: int) -> float:
     """On which side of an edge a point is: positive to its left."""
-    return (edges[row, 2] - edges[row, 0]) * (y - edges[row, 1]) - (
-        edges[row, 3] - edges[row, 1]
-    ) * (x - edges[row, 0])
+    dx, dy = edges[row, 2] - edges[row, 0], edges[row, 3] - edges[row, 1]
+    turned: float = dx * (y - edges[row, 1]) - dy * (x - edges[row, 0])
+    return turned
 
 
 @inlined
