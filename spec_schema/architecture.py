@@ -129,14 +129,25 @@ class NodeSpec(StrictModel):
                 yield Mistake("S316", message, f"remove '{key}'", (key,), on_key=True)
 
 
+def _listed(value: object) -> object:
+    """An arbiter by its name, as a list of one."""
+    return [value] if isinstance(value, str) else value
+
+
+ExclusiveSpec: TypeAlias = Annotated[
+    NodeNames, BeforeValidator(_listed, json_schema_input_type=Text | NodeNames)
+]
+
+
 @final
 class ResolutionSpec(StrictModel):
     """How a channel is resolved that several behaviors reach: exactly one way."""
 
-    exclusive: Name | None = Field(
+    exclusive: ExclusiveSpec | None = Field(
         default=None,
-        description="They never act at once; the arbiter that sees to it. It is proved.",
-        examples=["choose"],
+        description="They never act at once; the arbiter that sees to it, or a list of the nodes "
+        "where their own conditions do. It is proved.",
+        examples=["choose", ["seek", "avoid"]],
     )
     sum: NodeNames | None = Field(
         default=None, description="What they want is added.", examples=[["seek", "avoid"]]

@@ -186,14 +186,19 @@ def _governed(
     origin = findings.origin(path)
     places = _ordered(reach.nodes, parts)
     key = "exclusive" if spec.exclusive is not None else "blend"
-    name = spec.exclusive or spec.blend or ""
-    arbiter = _arbiter(name, parts, (*path, key), findings)
-    if arbiter is None or arbiter.arbiter is None:
-        return None
-    place = parts.index(name)
-    if key == "blend":
-        _check_weighed(arbiter, reach, (*path, key), parts, findings)
-        return Resolution(Way.BLEND, places, place, "", "", origin)
+    place = -1
+    if spec.exclusive is not None and len(spec.exclusive) != 1:
+        if not _names_all(spec.exclusive, reach, parts, (*path, key), findings):
+            return None
+    else:
+        name = spec.exclusive[0] if spec.exclusive is not None else spec.blend or ""
+        arbiter = _arbiter(name, parts, (*path, key), findings)
+        if arbiter is None or arbiter.arbiter is None:
+            return None
+        place = parts.index(name)
+        if key == "blend":
+            _check_weighed(arbiter, reach, (*path, key), parts, findings)
+            return Resolution(Way.BLEND, places, place, "", "", origin)
     if wiring is None:
         return None  # what acts when is not known
     pairs = [

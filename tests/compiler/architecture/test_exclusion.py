@@ -1,6 +1,7 @@
 """Exclusion proved by structure, conditions, memory and time, or refuted with a state."""
 
 import itertools
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -17,12 +18,14 @@ from compiler.architecture.exclusion.question import (
     Question,
     Signal,
 )
+from compiler.check import check
 from runtime.arbiter import Paradigm
 from runtime.code import Code
 from runtime.program import Unit
 from tests.compiler.architecture.exclusions import INPUTS, STEP, Case, N, acting, arbiter, wired
 
 METER = Unit("m", 1.0)
+REFUSED = Path(__file__).parents[2] / "golden" / "bad" / "exclusion_of_conditions.yaml"
 NEAR, FAR_OFF = "p 0.5 lt", "p 0.5 ge"
 FLEE_OR_GO = (("first",), ("second",))
 
@@ -198,6 +201,17 @@ def test_what_a_function_chooses_is_nobodys_to_know() -> None:
 
     assert isinstance(answer, Undecided)
     assert "learned is a Python function" in answer.reason
+
+
+def test_a_refused_architecture_is_proved_once_both_answer_as_quickly(tmp_path: Path) -> None:
+    text = REFUSED.read_text(encoding="utf-8").replace("parts/", f"{REFUSED.parent / 'parts'}/")
+    path = tmp_path / "tried.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert [found.code for found in check(path)] == ["S345"]
+
+    path.write_text(text.replace("response_time: 50 ms, ", ""), encoding="utf-8")
+
+    assert not check(path)
 
 
 def sensed(name: str, when: str, period: float, response: float) -> Decider:
