@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Final
 
 from compiler.check_behavior import Checked, check_behavior
-from compiler.check_kinds import check_kind
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Examined, examine
@@ -33,6 +32,9 @@ def check_examined(examined: Examined) -> tuple[Diagnostic, ...]:
     if isinstance(loaded.spec, BehaviorSpec):
         found = check_behavior(loaded, loaded.spec).findings.diagnostics
     else:
+        # Jacobians and graphs take half a second to load; a behavior's check does without them.
+        from compiler.check_kinds import check_kind  # noqa: PLC0415
+
         found = check_kind(loaded)
     told = {mistake.span for mistake in examined.mistakes}
     return (*examined.mistakes, *(d for d in found if _is_news(d, examined.lost, told)))
