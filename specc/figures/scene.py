@@ -1,0 +1,102 @@
+"""What pictures of a run are drawn from: plain arrays, so that they depend on nothing that runs."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+from runtime.arrays import Array, Integers
+from runtime.world.model import Shape
+
+NOBODY: Final = -1
+"""In `Trails.acting`: none of the robot's behaviors acts."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A thing or a robot: its footprint in its own frame, and whether it can be moved."""
+
+    name: str
+    shape: Shape
+    is_fixed: bool = False
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Lamp:
+    """A light. on: the index of the thing that carries it, -1 for none; x, y are relative to it."""
+
+    name: str
+    x: float
+    y: float
+    on: int = NOBODY
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Glow:
+    """Lux on the floor: xs (nx,), ys (ny,) are the middles of cells, lux (ny, nx)."""
+
+    xs: Array
+    ys: Array
+    lux: Array
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """What stands in a world. arena: (k, 2) the corners; its edges are walls."""
+
+    title: str
+    arena: Array
+    things: tuple[Item, ...]
+    robots: tuple[Item, ...]
+    lamps: tuple[Lamp, ...] = ()
+    glow: Glow | None = None
+    about: str = ""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that happened at a place: a robot touched something, or was stuck until `end`."""
+
+    robot: int
+    time: float
+    x: float
+    y: float
+    end: float = 0.0
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A requirement, whether it held (None: it can't be said), and by how much, in words."""
+
+    text: str
+    holds: bool | None
+    margin: str = ""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Trails:
+    """Where everything was.
+
+    Attributes:
+        times: (n,) seconds, increasing.
+        things: (n, t, 3) x, y, heading of each thing, in the order of the scene.
+        robots: (n, r, 3) likewise.
+        doers: for each robot the names of what may act.
+        acting: (n, r) an index into the robot's doers, or NOBODY.
+        contacts, jams: where they began.
+        outcomes: of the requirements.
+    """
+
+    times: Array
+    things: Array
+    robots: Array
+    doers: tuple[tuple[str, ...], ...]
+    acting: Integers
+    contacts: tuple[Mark, ...] = ()
+    jams: tuple[Mark, ...] = ()
+    outcomes: tuple[Outcome, ...] = ()
