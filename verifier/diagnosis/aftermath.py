@@ -1,6 +1,7 @@
 """The verdict's own figures once more, under a setting that explains the departure."""
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from runtime.arrays import Array, Integers
 from runtime.flow import Flow
 from verifier.diagnosis.altered import Altered, Seen
 from verifier.diagnosis.courses import means
+from verifier.diagnosis.loosened import PACE
 from verifier.diagnosis.scene import Scene
 from verifier.fidelity.shooting.grid import Grid
 from verifier.fidelity.shooting.plan import Plan
@@ -16,10 +18,14 @@ from verifier.fidelity.shooting.samples import Samples
 from verifier.fidelity.shooting.shooting import Errors, Shots, shoot
 from verifier.fidelity.shooting.study import Study
 
+USUAL: Final = 0.9
+"""Most steps are no longer than this quantile of them."""
+
 
 def altered_study(scene: Scene, study: Study, setting: Altered) -> Study:
     """The study with the inputs, numbers and measured states of `setting`, shot again."""
-    flow, grid = settled(scene, setting), _grid(scene, study, setting)
+    grid = _grid(scene, study, setting)
+    flow = settled(scene, setting, float(np.quantile(np.diff(grid.times), USUAL)))
     samples = tuple(_samples(each, setting.seen[each.state.name]) for each in study.plan.samples)
     plan = Plan(study.plan.needs, Model(flow, grid), samples, study.plan.windows)
     shots = shoot(plan, study.noise)
@@ -35,13 +41,13 @@ def _no_calmer(new: Errors, old: Errors) -> Errors:
     return replace(new, variance=np.maximum(new.variance, np.nan_to_num(old.variance)))
 
 
-def settled(scene: Scene, setting: Altered) -> Flow:
-    """The flow with the setting's numbers as its defaults."""
+def settled(scene: Scene, setting: Altered, step: float) -> Flow:
+    """The flow with the setting's numbers as its defaults, for integration in such steps (s)."""
     flow = scene.flow_for([setting])
     names = flow.program.register
     defaults = np.array(flow.defaults)
     for name, value in setting.register.items():
-        defaults[names.index(name)] = value
+        defaults[names.index(name)] = 1.0 / step if name == PACE else value
     defaults.setflags(write=False)
     return replace(flow, defaults=defaults)
 

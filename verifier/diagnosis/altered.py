@@ -65,8 +65,9 @@ class Effect:
 
     label: as in `dead time of turn`. subject: what is late, bounded or off, in words; empty where
     `applies_to` says it. detail: of a further term, the term; of a region, on which side of its
-    border it lies. is_delay: a number of seconds that may be negative, by which it is named a dead
-    time, a late log or an early one. starts: where a fit begins, the neutral values if empty.
+    border it lies; of a bound, how far a state goes. is_delay: a number of seconds that may be
+    negative, by which it is named a dead time, a late log or an early one. starts: where a fit
+    begins, the neutral values if empty.
     parameter: set where it is one of the scalars that are refitted. stands_in: it
     puts measured states in place of predicted ones, so that it is compared with itself at its
     neutral values. best_of: so many like it were looked at before, which costs their logarithm.

@@ -11,6 +11,7 @@ from typing import Final
 from runtime.program import Fidelity, Program, Unit
 from verifier.diagnosis.aftermath import altered_study
 from verifier.diagnosis.altered import Effect
+from verifier.diagnosis.candidates.bounds import effects_of_bounds
 from verifier.diagnosis.candidates.clocks import effects_on_clocks
 from verifier.diagnosis.candidates.inputs import effects_on_inputs
 from verifier.diagnosis.candidates.rates import effects_on_rates
@@ -84,6 +85,7 @@ def effects_of(scene: Scene, verdict: Verdict) -> tuple[Effect, ...]:
         *effects_on_inputs(scene),
         *effects_on_clocks(scene),
         *effects_on_rates(scene),
+        *effects_of_bounds(scene),
         *(() if is_passed else (*effects_of_terms(scene), *effects_on_regions(scene))),
     )
 

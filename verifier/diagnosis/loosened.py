@@ -5,7 +5,9 @@ The rate of each driven state becomes
     time_scale * (gain * (f * (1 - is_given) + given) + offset)
 
 with constants that leave it as it is: 1, 1, 0, 0, 0. `given` is a rate as a function of time, put
-in from outside. Parts of a formula can saturate and have dead zones (`wraps`). It works on the
+in from outside. Parts of a formula can saturate and have dead zones (`wraps`), and a state can stop
+at bounds: its rate is then clipped to `(least - x) * pace` and `(most - x) * pace`, so that with a
+pace of one step it comes to rest at the bound within a step or two. It works on the
 formula where there is one, since then every constant of the spec can be moved; else on the tables'
 coefficients. A step map's gain and offset act on how far it goes in a step.
 """
@@ -20,6 +22,8 @@ from verifier.diagnosis.wraps import ENDLESS, wrapped, wraps_of
 
 ONE: Final = Unit("1", 1.0)
 TIME_SCALE: Final = "time:scale"
+PACE: Final = "bound:pace"
+"""The register's entry for how fast (1/s) a state comes to rest at its bounds."""
 ROOM: Final = 1.0
 """How far beyond its domain a formula is followed, in widths of the domain."""
 
@@ -44,8 +48,23 @@ def is_given_of(name: str) -> str:
     return f"is_given:{name}"
 
 
+def least_of(name: str) -> str:
+    """The register's entry for the lower bound of a state."""
+    return f"bound:least:{name}"
+
+
+def most_of(name: str) -> str:
+    """The register's entry for the upper bound of a state."""
+    return f"bound:most:{name}"
+
+
+def is_bound(name: str) -> bool:
+    """Whether this entry of the register belongs to the bounds of a state."""
+    return name.startswith("bound:")
+
+
 def loosened_flow(program: Program, *, wraps: bool) -> Flow:
-    """The flow of the loosened program, whose parts saturate and have dead zones if `wraps`.
+    """The flow of the loosened program, whose parts saturate and whose states stop if `wraps`.
 
     Both have the same register.
     """
@@ -56,10 +75,11 @@ def loosened_flow(program: Program, *, wraps: bool) -> Flow:
 def _loosened(program: Program, *, is_wrapped: bool) -> Program:
     """The program with the constants above; with a formula, its domains are wider, too."""
     field = program.field
-    extra = [Constant(TIME_SCALE, ONE, 1.0, "", "")]
+    extra = [Constant(TIME_SCALE, ONE, 1.0, "", ""), Constant(PACE, ONE, 1.0, "", "")]
     for name in field.driven:
         plain = {gain_of(name): 1.0, offset_of(name): 0.0}
         plain |= {given_of(name): 0.0, is_given_of(name): 0.0}
+        plain |= {least_of(name): -ENDLESS, most_of(name): ENDLESS}
         extra += [Constant(key, ONE, value, "", "") for key, value in plain.items()]
     wraps = wraps_of(program)
     for wrap in wraps:
@@ -73,6 +93,7 @@ def _loosened(program: Program, *, is_wrapped: bool) -> Program:
             wrapped(code, tuple(w for w in wraps if w.name == name and is_wrapped)),
             name,
             is_map=field.is_map,
+            is_bounded=is_wrapped and not field.is_map,
         )
         for code, name in zip(field.formula, field.driven, strict=True)
     )
@@ -85,7 +106,8 @@ def _loosened(program: Program, *, is_wrapped: bool) -> Program:
     )
 
 
-def _loosened_code(code: Code, name: str, *, is_map: bool) -> Code:
+def _loosened_code(code: Code, name: str, *, is_map: bool, is_bounded: bool) -> Code:
+    low, high = (f"{bound} {name} sub {PACE} mul" for bound in (least_of(name), most_of(name)))
     before, after = (f"{name} sub", f"{name} add") if is_map else ("", "")
     parts = [
         code.text,
@@ -93,6 +115,7 @@ def _loosened_code(code: Code, name: str, *, is_map: bool) -> Code:
         f"1 {is_given_of(name)} sub mul {given_of(name)} add",
         f"{gain_of(name)} mul {offset_of(name)} add {TIME_SCALE} mul",
         after,
+        f"{low} {high} clip" if is_bounded else "",
     ]
     return Code(" ".join(part for part in parts if part))
 

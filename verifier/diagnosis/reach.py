@@ -4,32 +4,59 @@ A sensor that is late by d tells at t of t - d: before its window where t is the
 moment. Windows begin earlier then, and end later for one that is early, so that nothing is guessed
 beyond a path's ends. Step maps keep their ticks.
 
+A state that stops at a bound does so within a step: its steps are finer.
+
 L lanes, each a setting; W windows; S integration steps; F, E knots put in front and at the end.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from runtime.arrays import Array
 from runtime.program import Kind
 from verifier.diagnosis.altered import Altered
+from verifier.diagnosis.loosened import is_bound
 from verifier.diagnosis.scene import Scene
+
+CUTS: Final = 5
+"""Into so many steps each is cut where a state is bounded."""
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Reach:
-    """Knots (L, W, F + S + 1 + E); those of the scene begin at the index `front` = F."""
+    """Knots (L, W, F + S + 1 + E), each step cut into `cuts`.
+
+    Those of the scene begin at the index `front`, and are `cuts` apart.
+    """
 
     times: Array
     front: int
+    cuts: int = 1
+
+    @property
+    def step(self) -> float:
+        """The longest step."""
+        return float(np.max(np.diff(self.times, axis=-1)))
 
 
 def reach_of(scene: Scene, settings: list[Altered]) -> Reach:
-    """As far as each setting needs; all have as many knots, which coincide where none is needed."""
+    """As far and as fine as each setting needs; all have as many knots."""
+    plain = _far(scene, settings)
+    if not any(is_bound(name) for setting in settings for name in setting.register):
+        return plain
+    shares = np.arange(CUTS) / CUTS
+    lows, steps = plain.times[..., :-1, None], np.diff(plain.times, axis=-1)[..., None]
+    cut = (lows + shares * steps).reshape(*plain.times.shape[:-1], -1)
+    times = np.concatenate([cut, plain.times[..., -1:]], axis=-1)
+    return Reach(times, plain.front * CUTS, CUTS)
+
+
+def _far(scene: Scene, settings: list[Altered]) -> Reach:
+    """As far as each setting needs; knots coincide where none is needed."""
     delays = [[seen.delay for seen in setting.seen.values()] for setting in settings]
     late = [max(0.0, *each) if each else 0.0 for each in delays]
     early = [max(0.0, *(-d for d in each)) if each else 0.0 for each in delays]

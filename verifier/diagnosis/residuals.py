@@ -13,6 +13,7 @@ from runtime.integrators import rk4
 from runtime.program import Kind
 from verifier.diagnosis.altered import Altered, Seen
 from verifier.diagnosis.courses import Course, means
+from verifier.diagnosis.loosened import PACE
 from verifier.diagnosis.reach import Reach, reach_of
 from verifier.diagnosis.scene import Observed, Scene
 from verifier.fidelity.shooting.samples import turned
@@ -79,7 +80,7 @@ def _as_seen(reach: Reach, lane: int, seen: Seen, path: Array, observed: Observe
     """What the sensor would tell (W, m) of the path (W, S + 1)."""
     rows = np.arange(len(path))[:, None]
     if seen.delay == 0.0:
-        plain = path[rows, observed.at + reach.front]
+        plain = path[rows, observed.at * reach.cuts + reach.front]
     else:
         plain = _between(reach.times[lane], path, observed.times - seen.delay)
     return np.asarray(seen.scale * plain + seen.offset)
@@ -114,8 +115,7 @@ def _inputs(scene: Scene, settings: list[Altered], reach: Reach) -> tuple[Intege
         for k, name in enumerate(names):
             course = setting.courses.get(name)
             if course is None:
-                default = float(scene.flow.defaults[columns[k]])
-                values[i, :, :, k] = setting.register.get(name, default)
+                values[i, :, :, k] = _number(scene, setting, reach, name)
                 continue
             key = (name, id(course), knots)
             if key not in known:
@@ -123,6 +123,14 @@ def _inputs(scene: Scene, settings: list[Altered], reach: Reach) -> tuple[Intege
             values[i, :, :, k] = known[key]
     low, high = scene.flow.domain[:, columns]
     return columns, np.clip(values, low, high)
+
+
+def _number(scene: Scene, setting: Altered, reach: Reach, name: str) -> float:
+    """An entry of the register that stays; states come to rest at their bounds within a step."""
+    if name == PACE and name in setting.register:
+        return 1.0 / reach.step
+    default = float(scene.flow.defaults[scene.flow.program.register.index(name)])
+    return setting.register.get(name, default)
 
 
 def _held(course: Course, times: Array) -> Array:

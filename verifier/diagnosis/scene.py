@@ -19,7 +19,7 @@ from runtime.integrators import rk4
 from runtime.program import Kind, Program
 from verifier.diagnosis.altered import Altered, Seen
 from verifier.diagnosis.courses import Course, means
-from verifier.diagnosis.loosened import loosened_flow
+from verifier.diagnosis.loosened import is_bound, loosened_flow
 from verifier.diagnosis.wraps import is_wrap
 from verifier.fidelity.shooting.plan import Plan
 from verifier.fidelity.shooting.samples import Samples, edges, measured_states
@@ -73,8 +73,8 @@ class Observed:
 class Scene:
     """All that trying an explanation needs.
 
-    flow, wrapped: without and with parts that saturate or have dead zones. times: (W, S + 1)
-    integration knots; a short window repeats its last one. start: (W, n).
+    flow, wrapped: without and with parts that saturate or have dead zones, and states that stop at
+    bounds. times: (W, S + 1) integration knots; a short window repeats its last one. start: (W, n).
     plain: the setting in which all is as the spec and the log say.
     """
 
@@ -94,8 +94,8 @@ class Scene:
         return len(self.times)
 
     def flow_for(self, settings: list[Altered]) -> Flow:
-        """The plain flow, unless some part of the formula saturates or has a dead zone."""
-        is_wrapped = any(is_wrap(name) for s in settings for name in s.register)
+        """The plain flow, unless some part of the formula saturates, or a state is bounded."""
+        is_wrapped = any(is_wrap(n) or is_bound(n) for s in settings for n in s.register)
         return self.wrapped if is_wrapped else self.flow
 
 

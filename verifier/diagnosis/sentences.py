@@ -67,6 +67,8 @@ def of_candidate(effect: Effect, values: Values, numbers: tuple[FittedNumber, ..
         return _in_a_region(effect, numbers, size)
     if kind is CandidateKind.TERM:
         return _with_a_term(effect, numbers[0])
+    if kind is CandidateKind.BOUND:
+        return _with_a_bound(effect, numbers[0])
     said = {
         CandidateKind.DEAD_TIME: f"{subject} {verb} {size} later than the spec says",
         CandidateKind.LATE_LOG: f"the log tells {names} {size} {side}",
@@ -95,6 +97,11 @@ def _with_a_term(effect: Effect, found: FittedNumber) -> str:
     size = with_doubt(found.value, found.interval, found.unit.scale)
     term = f"{size}{suffix(found.unit)} times {effect.detail}"
     return f"the rate of {effect.applies_to[0]} has a further term {term}"
+
+
+def _with_a_bound(effect: Effect, found: FittedNumber) -> str:
+    size = f"{with_doubt(found.value, found.interval, found.unit.scale)}{suffix(found.unit)}"
+    return f"{effect.applies_to[0]} goes {effect.detail.format(size)}"
 
 
 def of_scalar(effect: Effect, found: FittedNumber) -> str:

@@ -57,8 +57,8 @@ class CandidateKind(StrEnum):
     DEAD_TIME: the robot answers to an input late. LATE_LOG: the log tells a series late (a
     `delay:` in `trace:` would mend it). CLOCK_OFFSET: all series of one topic, together. LAG: an
     input acts through a first-order lag. PARAMETER: a number of the spec, alone. EXCHANGED_VALUES:
-    of a discrete variable. REGION: a rate is off where some variable is beyond a border. TERM: a
-    rate has a further term.
+    of a discrete variable. BOUND: a state goes no further than a value. REGION: a rate is off
+    where some variable is beyond a border. TERM: a rate has a further term.
     """
 
     PARAMETER = "parameter"
@@ -70,6 +70,7 @@ class CandidateKind(StrEnum):
     BIAS = "bias"
     SATURATION = "saturation"
     DEAD_ZONE = "dead zone"
+    BOUND = "bound of a state"
     SIGN = "sign"
     SWAPPED_AXES = "swapped axes"
     UNIT_SLIP = "unit slip"
@@ -143,7 +144,8 @@ class Candidate:
     origin: where in the YAML it would be mended. claim: what the robot, the spec or the log would
     have to be like; `sentence` adds the evidence. leaves: what it leaves beyond a tolerance,
     with those that were taken before it; empty where nothing is. slip: of a UNIT_SLIP, what the
-    log is in and what it was taken for, in words.
+    log is in and what it was taken for, in words. parameter: of what kind its number is, where it
+    is one of those that are refitted.
     """
 
     kind: CandidateKind
@@ -158,6 +160,7 @@ class Candidate:
     sentence: str
     leaves: str = ""
     slip: str = ""
+    parameter: ParameterKind | None = None
 
 
 @final
