@@ -5,7 +5,7 @@ import io
 from pathlib import Path
 
 from runtime.program import Program
-from runtime.recording import recorded
+from runtime.recording.behavior import recorded
 from runtime.rollout import Rollout
 from specc.files import unknown_suffix, write_atomically
 

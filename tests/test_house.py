@@ -62,7 +62,9 @@ def test_every_spec_of_the_library_is_shipped_as_a_template() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
     shipped = settings["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
     library = {
-        f"specs/{p.name}" for p in (ROOT / "specs").iterdir() if p.suffix in {".yaml", ".py"}
+        p.relative_to(ROOT).as_posix()
+        for p in (ROOT / "specs").rglob("*")
+        if p.suffix in {".yaml", ".py"} and "recordings" not in p.parts
     }
 
     assert shipped.keys() == library

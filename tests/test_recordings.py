@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import specc
 from runtime.artifact import to_bytes
-from runtime.recording import self_bound
+from runtime.recording.behavior import self_bound
 from specc.cli import main
 
 ROOT = Path(__file__).parents[1]

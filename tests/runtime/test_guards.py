@@ -20,7 +20,7 @@ from runtime.flow import flow_of, in_one_mode
 from runtime.integrators import adaptive
 from runtime.kernels.tape import LANES
 from runtime.program import Program
-from runtime.recording import recorded
+from runtime.recording.behavior import recorded
 from runtime.rollout import Ending
 from runtime.simulate import FixedSteps, simulate
 from runtime.table import Axis, Method

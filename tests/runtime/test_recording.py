@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from runtime.artifact import from_bytes, to_bytes
 from runtime.code import Code
 from runtime.program import Binding, Kind, Program, Role, Unit
-from runtime.recording import record, recorded, self_bound
+from runtime.recording.behavior import record, recorded, self_bound
 from runtime.rollout import Rollout
 from runtime.simulate import simulate
 from tests.runtime.behaviors import NOWHERE, state, tabulated_van_der_pol, van_der_pol

@@ -1,0 +1,114 @@
+"""The named quantities of a run: what requirements and figures read."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from runtime.architecture import Signal
+from runtime.arrays import Array
+from runtime.program import Kind, State, Unit
+from runtime.recording.tracks import NodeTrack, Quantity, RobotTrack, WorldTrack
+from runtime.scenario import Robot
+
+METRES: Final = Unit("m", 1.0)
+RADIANS: Final = Unit("rad", 1.0)
+
+
+def quantities_of(
+    robots: Sequence[Robot], tracks: Sequence[RobotTrack], world: WorldTrack
+) -> dict[str, Quantity]:
+    """Every named quantity: of the world, then of each robot's sensors and nodes."""
+    found = [*_of_world(world, [robot.name for robot in robots])]
+    for robot, track in zip(robots, tracks, strict=True):
+        found += [*_of_sensors(robot, track), *_of_nodes(robot, track)]
+    return {quantity.name: quantity for quantity in found}
+
+
+def _of_world(world: WorldTrack, robots: Sequence[str]) -> Iterator[Quantity]:
+    times = world.times
+    for place, name in enumerate(world.names):
+        x, y, heading = world.poses[:, place].T
+        yield _measured(f"{name}.x", METRES, times, x)
+        yield _measured(f"{name}.y", METRES, times, y)
+        yield _measured(f"{name}.heading", RADIANS, times, wrapped(heading), Kind.PERIODIC)
+    for place, name in enumerate(robots):
+        speed, turn = world.motions[:, place].T
+        yield _measured(f"{name}.speed", Unit("m/s", 1.0), times, speed)
+        yield _measured(f"{name}.turn", Unit("rad/s", 1.0), times, turn)
+        yield _measured(f"{name}.light", Unit("lx", 1.0), times, world.light[:, place])
+        close = world.close_times
+        yield _measured(f"{name}.clearance", METRES, close, world.clearance[:, place])
+        contacts = world.contacts[:, place]
+        yield _measured(f"{name}.contacts", Unit("1", 1.0), close, contacts, Kind.DISCRETE)
+
+
+def _of_sensors(robot: Robot, track: RobotTrack) -> Iterator[Quantity]:
+    place = 0
+    for sensor, said in zip(robot.body.sensors, track.sensors, strict=True):
+        for column in range(len(sensor.readings)):
+            signal = robot.architecture.board[place]
+            yield _of_board(robot.name, signal, said.times, said.readings[:, column])
+            place += 1
+
+
+def _of_nodes(robot: Robot, track: RobotTrack) -> Iterator[Quantity]:
+    board, programs = robot.architecture.board, robot.architecture.programs
+    for node, ticks in zip(robot.architecture.nodes, track.nodes, strict=True):
+        later = ticks.times + node.response_time
+        for column, place in enumerate(node.outputs):
+            values = _column(ticks, ticks.outputs, column)
+            yield _of_board(robot.name, board[place], later, values)
+        for column, state in enumerate(
+            programs[node.behavior].states if node.behavior >= 0 else ()
+        ):
+            name = f"{robot.name}.{node.name}.{state.name}"
+            yield _of_state(name, state, ticks.times, _column(ticks, ticks.register, column))
+
+
+def _of_board(robot: str, signal: Signal, times: Array, values: Array) -> Quantity:
+    return Quantity(
+        name=f"{robot}.{signal.name}",
+        unit=signal.unit,
+        kind=signal.kind,
+        labels=signal.values,
+        low=signal.low,
+        high=signal.high,
+        is_held=True,
+        times=times,
+        values=values,
+    )
+
+
+def _of_state(name: str, state: State, times: Array, values: Array) -> Quantity:
+    return Quantity(
+        name=name,
+        unit=state.unit,
+        kind=state.kind,
+        labels=state.values,
+        low=state.low,
+        high=state.high,
+        is_held=True,
+        times=times,
+        values=wrapped(values, state.low, state.high) if state.kind is Kind.PERIODIC else values,
+    )
+
+
+def _column(ticks: NodeTrack, values: Array, column: int) -> Array:
+    return values[:, column] if ticks.times.size else np.zeros(0)
+
+
+def _measured(
+    name: str, unit: Unit, times: Array, values: Array, kind: Kind = Kind.CONTINUOUS
+) -> Quantity:
+    turns = kind is Kind.PERIODIC
+    low, high = (-math.pi, math.pi) if turns else (-math.inf, math.inf)
+    return Quantity(name, unit, kind, (), low, high, kind is Kind.DISCRETE, times, values)
+
+
+def wrapped(values: Array, low: float = -math.pi, high: float = math.pi) -> Array:
+    """The same angles within [low, high); those that are there already are not touched."""
+    turned = low + np.mod(values - low, high - low)
+    inside: Array = np.where((values >= low) & (values < high), values, turned)
+    return inside

@@ -1,0 +1,216 @@
+"""A scenario run: the scheduler and the world together, and everything that it leaves.
+
+No clock of a computer is read: the same scenario and seed leave the same arrays, bit for bit.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, TypeAlias, final
+
+import numpy as np
+
+from runtime.arrays import Array, frozen
+from runtime.recording.gathering import Gathering
+from runtime.recording.quantities import quantities_of
+from runtime.recording.tracks import Happening, LightFrames, Quantity, RobotTrack, WorldTrack
+from runtime.scenario import Scenario
+from runtime.scheduler.nodes import Learner
+from runtime.scheduler.observer import Observer, Silent
+from runtime.scheduler.scheduler import NO_LEARNERS, Scheduler
+from runtime.scheduler.sensors import SensorBank
+from runtime.world.audit import Audit
+from runtime.world.layout import Layout
+from runtime.world.light import LightMap
+from runtime.world.sensing import Senses, senses_of
+from runtime.world.world import Inhabitant, SimulatedWorld
+
+Progress: TypeAlias = Callable[[int, int], None]
+"""Is told how many steps of how many are done."""
+
+LOOK: Final = 0.02
+"""Seconds between two looks at where all are, at most; how near robots come is seen each step."""
+CELL: Final = 0.05
+"""Metres: the width of a cell of the light on the floor."""
+TOLD: Final = 200
+"""How often progress is told."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Run:
+    """What a run left.
+
+    scenario: with the seed that it was run with. duration: seconds. layout: where all stood at
+    first, with things that were laid at random. robots: in the order of the scenario.
+    signals: every named quantity. floor: the light on it, where that was asked for. digest: of
+    the state at the end: equal exactly where all that follows would be equal.
+    """
+
+    scenario: Scenario
+    duration: float
+    layout: Layout
+    robots: tuple[RobotTrack, ...]
+    world: WorldTrack
+    floor: LightFrames | None
+    signals: Mapping[str, Quantity]
+    events: tuple[Happening, ...]
+    audit: Audit
+    digest: bytes
+
+
+def run(
+    scenario: Scenario,
+    *,
+    allow_code: bool = False,
+    learners: Mapping[str, Learner] = NO_LEARNERS,
+    observer: Observer | None = None,
+    progress: Progress | None = None,
+    light_every: float | None = None,
+) -> Run:
+    """Run a scenario to its end.
+
+    Args:
+        scenario: compiled.
+        allow_code: whether Python that the scenario names may be run.
+        learners: by `robot.node`, what decides instead of the arbiter that is there.
+        observer: is told everything as it happens.
+        progress: is told a few hundred times how far it is.
+        light_every: seconds between two pictures of the light on the floor; None for none.
+
+    Raises:
+        NoRoomError: there is no room for what is placed at random.
+        UserCodeError: code of the user's own may not be run, is not found, or raised.
+    """
+    world, senses = _world(scenario)
+    robots = [(robot.name, robot.body) for robot in scenario.robots]
+    gathering = Gathering(scenario, observer or Silent())
+    scheduler = Scheduler(
+        scenario,
+        world,
+        SensorBank(robots, world, scenario.step, scenario.seed),
+        allow_code=allow_code,
+        observer=gathering,
+        learners=learners,
+    )
+    watch = _Watch(scenario, world, senses, light_every)
+    steps = max(round(scenario.duration / scenario.step), 1)
+    every = max(steps // TOLD, 1)
+    for done in range(steps):
+        watch.look()
+        scheduler.step()
+        if progress is not None and done % every == 0:
+            progress(done, steps)
+    watch.look(last=True)
+    tracks, seen = gathering.tracks(), watch.track()
+    return Run(
+        scenario=scenario,
+        duration=steps * scenario.step,
+        layout=world.layout,
+        robots=tracks,
+        world=seen,
+        floor=watch.floor(),
+        signals=quantities_of(scenario.robots, tracks, seen),
+        events=gathering.happenings(),
+        audit=world.audit(),
+        digest=scheduler.state_hash(),
+    )
+
+
+def _world(scenario: Scenario) -> tuple[SimulatedWorld, Senses]:
+    """The world of a scenario, laid out, and the senses in it."""
+    made: list[Senses] = []
+
+    def sensing(world: SimulatedWorld) -> Senses:
+        made.append(senses_of(world))
+        return made[0]
+
+    inhabitants = [
+        Inhabitant(
+            robot.name,
+            robot.body,
+            robot.start.pose,
+            tuple(channel.name for channel in robot.architecture.channels),
+        )
+        for robot in scenario.robots
+    ]
+    world = SimulatedWorld(
+        scenario.world, inhabitants, scenario.step, scenario.seed, senses=sensing
+    )
+    return world, made[0]
+
+
+@final
+class _Watch:
+    """Looks at the world between steps, and changes nothing in it."""
+
+    def __init__(
+        self, scenario: Scenario, world: SimulatedWorld, senses: Senses, light_every: float | None
+    ) -> None:
+        self._world, self._senses, self._step = world, senses, scenario.step
+        self._robots = range(len(scenario.robots))
+        things = (thing.name for thing in world.layout.things)
+        self._names = (*things, *(robot.name for robot in scenario.robots))
+        self._every = max(int(LOOK / scenario.step), 1)
+        self._at: list[int] = []
+        self._poses: list[Array] = []
+        self._motions: list[list[tuple[float, float]]] = []
+        self._light: list[list[float]] = []
+        self._clearance: list[list[float]] = []
+        self._contacts: list[list[float]] = []
+        self._map: LightMap | None = None
+        self._map_every = 0
+        self._map_at: list[int] = []
+        self._lux: list[Array] = []
+        if light_every is not None:
+            self._map_every = max(round(light_every / scenario.step), 1)
+            self._map = senses.light_map(_cells(scenario.world.arena))
+
+    def look(self, *, last: bool = False) -> None:
+        """Look, at what is due at this instant."""
+        steps, world = self._world.steps, self._world
+        self._clearance.append([world.clearance(robot) for robot in self._robots])
+        self._contacts.append([float(_touching(world, robot)) for robot in self._robots])
+        if last or steps % self._every == 0:
+            self._at.append(steps)
+            self._poses.append(world.poses())
+            motions = [world.motion(robot) for robot in self._robots]
+            self._motions.append([(motion.forward, motion.turn) for motion in motions])
+            self._light.append([self._senses.light(robot) for robot in self._robots])
+        if self._map is not None and steps % self._map_every == 0:
+            world.geometry()
+            self._map.update()
+            self._map_at.append(steps)
+            self._lux.append(self._map.lux.copy())
+
+    def track(self) -> WorldTrack:
+        """What was seen."""
+        count, robots = len(self._at), len(self._robots)
+        return WorldTrack(
+            names=self._names,
+            times=frozen(np.array(self._at, dtype=np.float64) * self._step),
+            poses=frozen(np.array(self._poses).reshape(count, len(self._names), 3)),
+            motions=frozen(np.array(self._motions).reshape(count, robots, 2)),
+            light=frozen(np.array(self._light).reshape(count, robots)),
+            close_times=frozen(np.arange(len(self._clearance)) * self._step),
+            clearance=frozen(np.array(self._clearance).reshape(-1, robots)),
+            contacts=frozen(np.array(self._contacts).reshape(-1, robots)),
+        )
+
+    def floor(self) -> LightFrames | None:
+        """The light on the floor, where that was asked for."""
+        if self._map is None:
+            return None
+        times = frozen(np.array(self._map_at, dtype=np.float64) * self._step)
+        return LightFrames(self._map.xs, self._map.ys, times, frozen(np.array(self._lux)))
+
+
+def _touching(world: SimulatedWorld, robot: int) -> int:
+    """How many others a robot touches."""
+    return len({contact.owner for contact in world.touching(robot)})
+
+
+def _cells(arena: tuple[tuple[float, float], ...]) -> tuple[int, int]:
+    """So many cells along x and y."""
+    corners = np.array(arena)
+    wide, high = np.ptp(corners, axis=0)
+    return max(round(wide / CELL), 1), max(round(high / CELL), 1)
