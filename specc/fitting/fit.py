@@ -15,17 +15,24 @@ from specc.fitting.aims import Aims
 from specc.fitting.cases import Case, Logs, Tell, logs_of
 from specc.fitting.compiling import compiled
 from specc.fitting.drawn import redrawn
-from specc.fitting.fitted import Fitted, Outcome
+from specc.fitting.explanations import Explanation, explanations_of, pooled_explanations
+from specc.fitting.fitted import Fitted, Outcome, joined
 from specc.fitting.moves import Move, moved, moves_of
 from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
 from specc.fitting.reading import aims_of
+from specc.fitting.weighing import Weighed, as_good, passed_over, weighed
 from specc.spec_finding import find_spec
 from specc.verifying import Clock, behavior_for_verify, refuse_code
 from verifier.diagnosis.diagnose import diagnose
+from verifier.report.diagnosis import Diagnosis
 from verifier.report.report import Report, Standing, Verdict
 from verifier.report.wording import listed
 
+OF_READING: Final = ("unit", "scale")
+"""Edits that decide whether a log can be compared at all: what was out of its domain is in it."""
+ROUNDS: Final = 3
+"""So often the text is edited, at most, where each edit lets more of the log be compared."""
 BY_HAND: Final = "specc verify says which numbers depart; edit them by hand, and compile the spec"
 
 
@@ -57,26 +64,79 @@ def fit(
     found = find_spec(logs.paths[0], None if spec is None else Path(spec), behavior_for_verify)
     loaded = own_text(found.program)
     refuse_code(loaded, "fit", BY_HAND)
-    cases = logs.judged(found.program, tell)
-    told = pooled([_aims(case, tell) for case in cases])
-    moves = moves_of(loaded, told.aims)
-    case = _Fit(found.how, loaded.source, cases, told, moves, ())
-    if told.beyond or told.left or not moves:
-        case = _with_vectors(case, loaded, logs, tell)
-    return _ended(case, logs, tell, anyway=anyway)
+    task = _Task(found.how, logs, tell, anyway)
+    first = last = _round(task, loaded, logs.judged(found.program, tell))
+    whole = first.fitted
+    for _ in range(ROUNDS - 1):
+        if last.fitted.outcome is not Outcome.MOVED or not _opens_more(last.fitted):
+            break
+        tell("fitting again, since more can be compared")
+        last = _round(task, last.loaded, last.cases)
+        whole = joined(whole, last.fitted)
+    return whole
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Task:
+    """What all rounds share."""
+
+    how: str
+    logs: Logs
+    tell: Tell
+    anyway: bool
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Round:
+    """What one round came to; the text with its edits, and the recordings judged by it."""
+
+    fitted: Fitted
+    loaded: Loaded
+    cases: tuple[Case, ...]
+
+
+def _round(task: _Task, loaded: Loaded, cases: tuple[Case, ...]) -> _Round:
+    """From the recordings as `loaded` has them judged to its edit."""
+    diagnoses = [_diagnosed(case, task.tell) for case in cases]
+    each = [aims_of(c.program, d) for c, d in zip(cases, diagnoses, strict=True)]
+    told = pooled(each)
+    ways = [
+        explanations_of(c.program, d, aims.aims)
+        for c, d, aims in zip(cases, diagnoses, each, strict=True)
+    ]
+    case = _Fit(task.how, loaded, cases, told, moves_of(loaded, told.aims))
+    case = _weighed(case, pooled_explanations(ways, told.aims), task)
+    told = case.told
+    if told.beyond or told.left or not case.moves:
+        case = _with_vectors(case, task)
+    return _ended(case, task)
+
+
+def _opens_more(fitted: Fitted) -> bool:
+    """Whether the log is read otherwise, so that more of it may be compared, and not all pass."""
+    is_passed = all(report.verdict is Verdict.PASS for report in fitted.after)
+    return not is_passed and any(move.edit.path[-1] in OF_READING for move in fitted.moves)
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Fit:
-    """A fit on its way: what the recordings say, and what would be moved."""
+    """A fit on its way: what the recordings say, and what would be moved.
+
+    ways: explanations that are as good, the first of which `moves` are of; empty where one is
+    best. instead: why others were not taken.
+    """
 
     how: str
-    source: Source
+    loaded: Loaded
     cases: tuple[Case, ...]
     told: Aims
     moves: tuple[Move, ...]
-    stays: tuple[str, ...]
+    stays: tuple[str, ...] = ()
+    ways: tuple[Weighed, ...] = ()
+    instead: tuple[str, ...] = ()
 
     def ended(
         self, outcome: Outcome, edited: Source | None = None, after: tuple[Report, ...] = ()
@@ -85,8 +145,8 @@ class _Fit:
         return Fitted(
             outcome=outcome,
             how=self.how,
-            source=self.source,
-            edited=edited or self.source,
+            source=self.loaded.source,
+            edited=edited or self.loaded.source,
             moves=self.moves,
             beyond=(*self.told.beyond, *self.told.by_hand),
             left=self.told.left,
@@ -94,49 +154,75 @@ class _Fit:
             stays=self.stays,
             before=tuple(case.report for case in self.cases),
             after=after,
+            ways=self.ways,
+            instead=self.instead,
         )
 
 
-def _aims(case: Case, tell: Tell) -> Aims:
+def _diagnosed(case: Case, tell: Tell) -> Diagnosis:
     tell(f"{case.report.trace.source}, why it departs")
     trace, study = case.judged()
-    diagnosis = diagnose(case.program, trace, study, case.report)
-    return aims_of(case.program, diagnosis)
+    return diagnose(case.program, trace, study, case.report)
 
 
-def _with_vectors(case: _Fit, loaded: Loaded, logs: Logs, tell: Tell) -> _Fit:
+def _weighed(case: _Fit, explanations: tuple[Explanation, ...], task: _Task) -> _Fit:
+    """With the edits of what explains best; with several `ways` where nothing decides."""
+    if case.told.beyond or not explanations:
+        return case
+    task.tell("weighing explanations")
+    found = weighed(case.loaded, case.cases, task.logs, explanations, _departures, task.tell)
+    best = as_good(found)
+    if not best:
+        return case
+    first = best[0]
+    told = case.told
+    if first.explanation.label != explanations[0].label:
+        told = replace(told, aims=first.explanation.aims, left=(), choices=())
+    if len(best) > 1:
+        return replace(case, told=told, moves=first.moves, ways=best)
+    return replace(case, told=told, moves=first.moves, instead=passed_over(found, first))
+
+
+def _with_vectors(case: _Fit, task: _Task) -> _Fit:
     """A drawn field can follow what no single number stands for.
 
     Numbers that were fitted beside what its vectors explain are left alone.
     """
     if all(each.report.verdict is Verdict.PASS for each in case.cases):
         return case
-    found = redrawn(loaded, case.cases, logs, tell)
+    found = redrawn(case.loaded, case.cases, task.logs, task.tell)
     if found is None or not found.moves:
         return case
     return replace(case, moves=found.moves, stays=found.stays, told=Aims(()))
 
 
-def _ended(case: _Fit, logs: Logs, tell: Tell, *, anyway: bool) -> Fitted:
+def _ended(case: _Fit, task: _Task) -> _Round:
     """With the edited text and its verdicts, or with why there is none."""
-    told = case.told
-    if (told.beyond or told.left) and not (anyway and case.moves):
-        return case.ended(Outcome.STRUCTURE_DIFFERS)
-    if told.by_hand and not (anyway and case.moves):
-        return case.ended(Outcome.BY_HAND)
-    if told.choices and not (anyway and case.moves):
-        return case.ended(Outcome.CANNOT_TELL)
-    if not case.moves:
-        return case.ended(_unmoved(case.cases))
-    edited = moved(case.source, case.moves)
-    _, program = compiled(edited)
-    again = logs.judged_again(case.cases, program, tell)
+    why_not = _why_not(case)
+    if why_not is not None and not (task.anyway and case.moves):
+        return _Round(case.ended(why_not), case.loaded, case.cases)
+    edited = moved(case.loaded.source, case.moves)
+    loaded, program = compiled(edited)
+    again = task.logs.judged_again(case.cases, program, task.tell)
     after = tuple(each.report for each in again)
     left = tuple(dict.fromkeys(sentence for each in again for sentence in _departures(each)))
-    if left and not anyway:
-        case = replace(case, told=replace(told, left=left))
-        return case.ended(Outcome.STRUCTURE_DIFFERS, None, after)
-    return case.ended(Outcome.MOVED, edited, after)
+    if left and not task.anyway:
+        case = replace(case, told=replace(case.told, left=left))
+        fitted = case.ended(Outcome.STRUCTURE_DIFFERS, None, after)
+        return _Round(fitted, case.loaded, case.cases)
+    return _Round(case.ended(Outcome.MOVED, edited, after), loaded, again)
+
+
+def _why_not(case: _Fit) -> Outcome | None:
+    """How it ends without an edit; None where there is one to try."""
+    told = case.told
+    if told.beyond or told.left:
+        return Outcome.STRUCTURE_DIFFERS
+    if told.by_hand:
+        return Outcome.BY_HAND
+    if told.choices or case.ways:
+        return Outcome.CANNOT_TELL
+    return None if case.moves else _unmoved(case.cases)
 
 
 def _unmoved(cases: tuple[Case, ...]) -> Outcome:

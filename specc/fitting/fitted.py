@@ -1,7 +1,7 @@
 """What a fit comes to: the moves, the text before and after, and the verdicts on both."""
 
 import difflib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import final
@@ -10,6 +10,7 @@ from spec_schema.source import Source
 from specc.faults import fault
 from specc.files import write_atomically
 from specc.fitting.moves import Move
+from specc.fitting.weighing import Weighed
 from verifier.report.report import Report
 
 BOM = b"\xef\xbb\xbf"
@@ -39,7 +40,9 @@ class Fitted:
     how: which spec it is, and why. moves: what was moved, or would be. beyond: what departs and is
     no number of the spec. left: what the moves would leave open. choices: what the recordings
     can't tell. stays: what stays as it is since nothing tells it. before, after: the reports on
-    each recording; none after where no edit was tried.
+    each recording; none after where no edit was tried. ways: explanations that are as good as one
+    another, with the edits that each would mean. instead: why explanations that leave the same
+    trace were not taken.
     """
 
     outcome: Outcome
@@ -53,6 +56,8 @@ class Fitted:
     stays: tuple[str, ...]
     before: tuple[Report, ...]
     after: tuple[Report, ...]
+    ways: tuple[Weighed, ...] = ()
+    instead: tuple[str, ...] = ()
 
     @property
     def path(self) -> Path:
@@ -79,6 +84,26 @@ class Fitted:
         data = _unchanged(self.path, self.source.text)
         mark = BOM if data.startswith(BOM) else b""
         write_atomically(self.path, mark + self.edited.text.encode())
+
+
+def joined(first: Fitted, last: Fitted) -> Fitted:
+    """An edit and what a further round found with it; a round that edits nothing says why."""
+    if last.outcome is not Outcome.MOVED:
+        open_ = (*last.beyond, *last.left, *last.choices)
+        claims = tuple(way.explanation.claim for way in last.ways)
+        return replace(first, stays=tuple(dict.fromkeys((*first.stays, *open_, *claims))))
+    found = {move.path: move for move in first.moves}
+    for move in last.moves:
+        old = found.get(move.path, move)
+        found[move.path] = replace(move, old=old.old, place=old.place)
+    return replace(
+        first,
+        edited=last.edited,
+        moves=tuple(found.values()),
+        stays=(*first.stays, *last.stays),
+        after=last.after,
+        instead=(*first.instead, *last.instead),
+    )
 
 
 def _unchanged(path: Path, text: str) -> bytes:

@@ -19,23 +19,34 @@ HALF: Final = float(special.ndtri(0.5 + 0.5 * CONFIDENCE))
 
 
 def pooled(told: Sequence[Aims]) -> Aims:
-    """One aim for each place; a recording that says nothing of a place has no say in it."""
-    places = dict.fromkeys(aim.path for each in told for aim in each.aims)
+    """What all of them say, each sentence once."""
+    aims, contradictions = pooled_aims([each.aims for each in told])
+    choices = [*(sentence for each in told for sentence in each.choices), *contradictions]
+    beyond = dict.fromkeys(sentence for each in told for sentence in each.beyond)
+    left = dict.fromkeys(sentence for each in told for sentence in each.left)
+    by_hand = dict.fromkeys(sentence for each in told for sentence in each.by_hand)
+    return Aims(aims, tuple(beyond), tuple(left), tuple(dict.fromkeys(choices)), tuple(by_hand))
+
+
+def pooled_aims(
+    told: Sequence[tuple[AnyAim, ...]],
+) -> tuple[tuple[AnyAim, ...], tuple[str, ...]]:
+    """One aim for each place, and sentences on contradictions.
+
+    A recording that says nothing of a place has no say in it.
+    """
     aims: list[AnyAim] = []
-    choices = [sentence for each in told for sentence in each.choices]
-    for path in places:
-        found = [aim for each in told for aim in each.aims if aim.path == path]
+    contradictions: list[str] = []
+    for path in dict.fromkeys(aim.path for each in told for aim in each):
+        found = [aim for each in told for aim in each if aim.path == path]
         numbers = [aim for aim in found if isinstance(aim, Aim)]
         aims.append(_mean(numbers) if len(numbers) == len(found) else found[0])
         if _is_contradiction(found):
             values = " and ".join(_shown(aim) for aim in found)
-            choices.append(f"{found[0].name}: the recordings contradict one another: {values}")
-    beyond = dict.fromkeys(sentence for each in told for sentence in each.beyond)
-    left = dict.fromkeys(sentence for each in told for sentence in each.left)
-    by_hand = dict.fromkeys(sentence for each in told for sentence in each.by_hand)
-    return Aims(
-        tuple(aims), tuple(beyond), tuple(left), tuple(dict.fromkeys(choices)), tuple(by_hand)
-    )
+            contradictions.append(
+                f"{found[0].name}: the recordings contradict one another: {values}"
+            )
+    return tuple(aims), tuple(contradictions)
 
 
 def _mean(found: Sequence[Aim]) -> Aim:

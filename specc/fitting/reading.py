@@ -7,8 +7,9 @@ import math
 from typing import Final
 
 from runtime.program import Program
-from specc.fitting.aims import Aim, Aims, AnyAim
-from specc.fitting.readings import OF_INPUTS, affine, delays, mended
+from specc.fitting.aims import Aims, AnyAim
+from specc.fitting.explanations import LATE, OF_LOGS
+from specc.fitting.readings import OF_INPUTS, affine, delays, mended, own_number
 from verifier.report.diagnosis import (
     OF_SENSORS,
     Candidate,
@@ -24,8 +25,6 @@ from verifier.report.wording import listed, percent
 ENOUGH: Final = 0.6
 """What is moved explains at least this share of the error beyond noise."""
 SCALARS: Final = (CandidateKind.PARAMETER, CandidateKind.GAIN, CandidateKind.BIAS)
-LATE: Final = (CandidateKind.LATE_LOG, CandidateKind.CLOCK_OFFSET)
-OF_LOGS: Final = (CandidateKind.SIGN, CandidateKind.UNIT_SLIP)
 
 
 def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
@@ -74,7 +73,7 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
             found += affine(name, own, program, bindings)
     for number in moved:
         if number.kind not in OF_INPUTS + OF_SENSORS:
-            found.append(_own(number, program))
+            found.append(own_number(number, program))
     return found
 
 
@@ -106,24 +105,6 @@ def _in_order(diagnosis: Diagnosis) -> list[Refitted]:
         return labels.index(label) if label in labels else 0
 
     return sorted(moved, key=place)
-
-
-def _own(found: Refitted, program: Program) -> Aim | str:
-    """A constant or a control that the recording held at one value."""
-    half = 0.5 * (found.interval.high - found.interval.low)
-    bindings = {binding.name: binding for binding in program.bindings}
-    match found.kind:
-        case ParameterKind.CONSTANT:
-            path = ("constants", found.name, "value")
-        case ParameterKind.CONTROL:
-            is_told = found.name in bindings and bindings[found.name].constant is not None
-            path = (
-                ("trace", found.name, "constant") if is_told else ("control", found.name, "default")
-            )
-        case _:
-            return f"{found.sentence}; no number of the spec stands for it"
-    unit = found.unit
-    return Aim(path, found.name, found.value, half, unit.text, unit.scale, found.sentence)
 
 
 def _left(diagnosis: Diagnosis) -> tuple[str, ...]:

@@ -91,6 +91,24 @@ def _mended(
     return f"{candidate.sentence}; write the unit of the log into 'trace: {name}:' by hand"
 
 
+def own_number(found: Refitted, program: Program) -> Aim | str:
+    """A constant or a control that the recording held at one value."""
+    half = 0.5 * (found.interval.high - found.interval.low)
+    bindings = {binding.name: binding for binding in program.bindings}
+    match found.kind:
+        case ParameterKind.CONSTANT:
+            path = ("constants", found.name, "value")
+        case ParameterKind.CONTROL:
+            is_told = found.name in bindings and bindings[found.name].constant is not None
+            path = (
+                ("trace", found.name, "constant") if is_told else ("control", found.name, "default")
+            )
+        case _:
+            return f"{found.sentence}; no number of the spec stands for it"
+    unit = found.unit
+    return Aim(path, found.name, found.value, half, unit.text, unit.scale, found.sentence)
+
+
 def _for_inputs(moved: dict[ParameterKind, Refitted]) -> tuple[float, float]:
     factor, summand = 1.0, 0.0
     for kind, each in moved.items():

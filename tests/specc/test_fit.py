@@ -265,14 +265,23 @@ def test_a_late_log_turns_a_bare_path_into_a_mapping_with_a_delay(tmp_path: Path
     assert found.after[0].verdict is Verdict.PASS
 
 
-def test_a_gain_of_an_input_becomes_its_scale(tmp_path: Path) -> None:
+def test_scales_that_leave_the_same_trace_are_both_shown_and_anyway_writes_the_first(
+    tmp_path: Path,
+) -> None:
+    """x' = k speed: a speed logged half as large is an x logged twice as large."""
     spec = tmp_path / "slide.yaml"
     entry = "  speed:\n    path: speed  # command\n    scale: 0.5"
     spec.write_text(SLIDE.format(rate="speed", speed=entry))
+    run = slid(tmp_path / "run.csv")
 
-    found = specc.fit(slid(tmp_path / "run.csv"), spec)
+    found, forced = specc.fit(run, spec), specc.fit(run, spec, anyway=True)
 
-    [(old, new)] = changed_lines(found.source.text, found.edited.text)
+    assert (found.outcome, found.edited) == (Outcome.CANNOT_TELL, found.source)
+    of_speed, of_x = (float(way.moves[0].new) for way in found.ways)
+    assert [way.moves[0].name for way in found.ways] == ["scale of speed", "scale of x"]
+    assert (of_speed, of_x) == (pytest.approx(1.0, abs=0.02), pytest.approx(0.5, abs=0.01))
+    assert all(way.explanation.telling for way in found.ways)
+    [(old, new)] = changed_lines(forced.source.text, forced.edited.text)
     assert old == "    scale: 0.5"
     assert float(new.removeprefix("    scale: ")) == pytest.approx(1.0, abs=0.02)
 

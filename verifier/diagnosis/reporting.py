@@ -196,4 +196,5 @@ def _candidate(
         sentence=f"{said}; {evidence}",
         leaves=left,
         slip=slip_of(effect, values) if kind is CandidateKind.UNIT_SLIP else "",
+        parameter=effect.parameter,
     )
