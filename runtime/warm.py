@@ -24,6 +24,7 @@ from runtime.scheduler.ticker import Ticker
 from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
 from runtime.world.geometry import Plan
+from runtime.world.kernels import nearness
 from runtime.world.kernels.cache import SOURCES as SENSES
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Light, Pose
@@ -88,6 +89,11 @@ def _senses() -> object:
     )
 
 
+def _gap() -> object:
+    edges, circles = np.zeros((1, 4)), np.zeros((0, 3))
+    return nearness.gap(edges, circles, edges, circles, np.ones(1, dtype=np.bool_), np.inf)
+
+
 def _tick() -> object:
     inputs = Inputs((), {})
     ticker = Ticker(NO_MOTION, inputs, (), None, 1.0, np.random.default_rng(0))
@@ -109,6 +115,7 @@ KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("fixed steps", _step),
     ("adaptive steps", _adapt),
     ("rays and light", _senses),
+    ("clearances", _gap),
     ("ticks of behaviors", _tick),
     ("competition", _competition),
 )
