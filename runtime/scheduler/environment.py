@@ -9,7 +9,8 @@ The calls at one instant k, in this order, and no others:
 1. `Sensors.due(k)` where `Sensors.next_due` is k: it calls `Environment.sample` for each sensor
    that is due, in the order of robots and sensors, and gives back what goes on the board now;
 2. nodes tick (nothing of the world is asked);
-3. `Environment.command`, once for each robot, in the order of robots;
+3. `Environment.command`, once for each robot whose channels are set anew (at instant 0: each), in
+   the order of robots;
 4. `Environment.advance`, once: afterwards it is instant k + 1.
 """
 
