@@ -101,6 +101,8 @@ def run(
         if progress is not None and done % every == 0:
             progress(done, steps)
     watch.look(last=True)
+    if progress is not None:
+        progress(steps, steps)
     tracks, seen = gathering.tracks(), watch.track()
     return Run(
         scenario=scenario,

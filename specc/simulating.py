@@ -1,0 +1,120 @@
+"""A scenario run, and judged by what is required of it."""
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias, final
+
+import numpy as np
+
+from runtime.program import Kind
+from runtime.recording.tracks import Quantity
+from runtime.run import Run, run
+from runtime.scenario import Scenario
+from runtime.user_code import UserCodeError
+from runtime.world.layout import NoRoomError
+from spec_schema.diagnostics import SpecError
+from specc.faults import fault
+from specc.given import Value, seconds
+from specc.loading import compile_scenario_spec
+from verifier.report.requirement_results import Outcome, RequirementResult
+from verifier.requirements.judge import judge_requirements
+from verifier.requirements.signals import Signal
+
+Progress: TypeAlias = Callable[[str, int, int], None]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Simulation:
+    """A run, and whether it is as required."""
+
+    run: Run
+    requirements: tuple[RequirementResult, ...]
+
+    @property
+    def outcome(self) -> Outcome:
+        """Violated where one requirement is, else open where one is, else satisfied."""
+        outcomes = {each.outcome for each in self.requirements}
+        worst = (one for one in (Outcome.VIOLATED, Outcome.OPEN) if one in outcomes)
+        return next(worst, Outcome.SATISFIED)
+
+
+def simulate_scenario(
+    spec: Scenario | Path | str,
+    *,
+    seed: int | None = None,
+    duration: Value | None = None,
+    allow_code: bool = False,
+    light_every: float | None = None,
+    progress: Progress | None = None,
+) -> Simulation:
+    """Run a scenario, and judge the run by its requirements.
+
+    Args:
+        spec: a compiled scenario, or the path of one.
+        seed, duration: in the place of the scenario's own.
+        allow_code: whether Python that the scenario names may be run.
+        light_every: seconds between two pictures of the light on the floor; None for none.
+        progress: is told what is done, how much of it, and of how much.
+
+    Raises:
+        SpecError: the spec is wrong, there is no room (V381), or code of the user's own may not
+            be run or fails (V382).
+    """
+    tell = progress or _in_silence
+    scenario = spec if isinstance(spec, Scenario) else compile_scenario_spec(spec, tell).scenario
+    if seed is not None:
+        scenario = dataclasses.replace(scenario, seed=seed)
+    if duration is not None:
+        scenario = dataclasses.replace(scenario, duration=whole(seconds(duration), scenario.step))
+    try:
+        made = run(
+            scenario,
+            allow_code=allow_code,
+            light_every=light_every,
+            progress=lambda done, of: tell("running", done, of),
+        )
+    except NoRoomError as error:
+        raise _no_room(scenario, error) from error
+    except UserCodeError as error:
+        remedy = "" if allow_code else "read that code, then run it with --allow-code"
+        raise fault("V382", scenario.source.file, str(error), remedy) from error
+    tell("judging", 1, 1)
+    return Simulation(made, required_of(made))
+
+
+def required_of(made: Run) -> tuple[RequirementResult, ...]:
+    """What the run says of each requirement of its scenario."""
+    units = {name: quantity.unit for name, quantity in made.signals.items()}
+    signals = {name: signal_of(quantity) for name, quantity in made.signals.items()}
+    return judge_requirements(made.scenario.requirements, signals, made.duration, units)
+
+
+def signal_of(quantity: Quantity) -> Signal:
+    """A quantity as requirements read it; one without a sample was never known."""
+    turns = quantity.kind is Kind.PERIODIC
+    times, values = quantity.times, quantity.values
+    return Signal(
+        name=quantity.name,
+        times=times if times.size else np.zeros(1),
+        values=values if values.size else np.full(1, np.nan),
+        is_held=quantity.is_held,
+        period=quantity.high - quantity.low if turns else 0.0,
+        low=quantity.low if turns else 0.0,
+    )
+
+
+def whole(duration: float, step: float) -> float:
+    """A duration as the nearest whole number of steps, and one at least."""
+    return max(round(duration / step), 1) * step
+
+
+def _no_room(scenario: Scenario, error: NoRoomError) -> SpecError:
+    remedy = "or try another --seed"
+    return fault("V381", error.origin or scenario.source.file, str(error), remedy)
+
+
+def _in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""

@@ -1,0 +1,155 @@
+"""What happened in a run of a scenario, as text for people and as a record for programs."""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from runtime.recording.tracks import Happening, RobotTrack
+from runtime.run import Run
+from runtime.world.audit import Jam
+from specc.simulating import Simulation
+from verifier.report.layout import INDENT, section, table
+from verifier.report.requirement_record import requirements_record, requirements_text
+from verifier.report.wording import number, percent, seconds
+
+MILLIMETRES: Final = 1e3
+
+
+def simulation_text(made: Simulation, took: float) -> str:
+    """What was required, what each robot did, and what should not pass in silence.
+
+    took: seconds of the computer.
+    """
+    run = made.run
+    scenario = run.scenario
+    factor = run.duration / max(took, 1e-9)
+    head = (
+        f"{scenario.name}: {seconds(run.duration)} simulated, seed {scenario.seed} "
+        f"({number(factor)} times as fast as real time)"
+    )
+    blocks = [head]
+    if made.requirements:
+        blocks.append(requirements_text(made.requirements))
+    for place, robot in enumerate(scenario.robots):
+        rows = [*_robot_rows(run, place), *_node_rows(run, place)]
+        blocks.append(section(robot.name, [table(rows, INDENT)]))
+    blocks.append(section("audit", [table(list(_audit_rows(run)), INDENT)]))
+    return "\n\n".join(blocks)
+
+
+def simulation_record(made: Simulation, took: float) -> dict[str, object]:
+    """The same for programs, in SI; `took` is the only thing that differs between two runs."""
+    run = made.run
+    return {
+        "scenario": run.scenario.name,
+        "seed": run.scenario.seed,
+        "duration": run.duration,
+        "step": run.scenario.step,
+        "took": took,
+        "real_time_factor": run.duration / max(took, 1e-9),
+        "outcome": str(made.outcome),
+        "requirements": requirements_record(made.requirements),
+        "robots": {
+            robot.name: _robot_record(run, place) for place, robot in enumerate(run.scenario.robots)
+        },
+        "events": [
+            {"time": e.time, "robot": e.robot, "what": e.what, "where": e.where} for e in run.events
+        ],
+        "jams": [_jam_record(jam) for jam in run.audit.jams],
+        "worst_penetration": {
+            "depth": run.audit.depth,
+            "between": list(run.audit.pair),
+            "time": run.audit.time,
+        },
+        "state_hash": run.digest.hex(),
+    }
+
+
+def _robot_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
+    yield "driven", f"{number(travelled(run, place))} m"
+    count, share = touched(run, place)
+    how = f"{count} time{'' if count == 1 else 's'}, {percent(share)} of the time"
+    yield "touched something", how if count else "never"
+    yield "nearest to anything", f"{number(float(run.world.clearance[:, place].min()))} m"
+
+
+def _node_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
+    architecture = run.scenario.robots[place].architecture
+    shares = acting_shares(run.robots[place], run.duration)
+    for node, share in zip(architecture.nodes, shares, strict=True):
+        if node.behavior >= 0:
+            yield f"{node.name} acted", f"{percent(share)} of the time"
+
+
+def _audit_rows(run: Run) -> Iterator[tuple[str, str]]:
+    jams = [_jam_text(jam) for jam in run.audit.jams]
+    yield "stuck", "; ".join(jams) or "never"
+    conflicts = [event for event in run.events if event.what == "conflict"]
+    yield "conflicts", _counted(conflicts) if conflicts else "none"
+    kinds = {(e.robot, e.what, e.where): e for e in reversed(run.events) if e.what != "conflict"}
+    for robot, what, where in sorted(kinds):
+        same = [e for e in run.events if (e.robot, e.what, e.where) == (robot, what, where)]
+        yield f"{robot}.{where}: {what}", _counted(same)
+    depth = f"{number(run.audit.depth * MILLIMETRES)} mm"
+    one, other = run.audit.pair
+    yield "worst penetration", f"{depth} of {one} and {other}" if one else depth
+
+
+def _counted(events: list[Happening]) -> str:
+    times = "once" if len(events) == 1 else f"{len(events)} times"
+    return f"{times}, first at {seconds(events[0].time)}"
+
+
+def _jam_text(jam: Jam) -> str:
+    held = f" at {jam.thing}" if jam.thing else ""
+    return f"{jam.robot} {jam.cause}{held} from {number(jam.begin)} to {number(jam.end)} s"
+
+
+def _jam_record(jam: Jam) -> dict[str, object]:
+    return {
+        "robot": jam.robot,
+        "thing": jam.thing,
+        "cause": str(jam.cause),
+        "begin": jam.begin,
+        "end": jam.end,
+        "force": jam.force,
+    }
+
+
+def _robot_record(run: Run, place: int) -> dict[str, object]:
+    count, share = touched(run, place)
+    architecture = run.scenario.robots[place].architecture
+    shares = acting_shares(run.robots[place], run.duration)
+    return {
+        "driven": travelled(run, place),
+        "touched": count,
+        "touching": share,
+        "nearest": float(run.world.clearance[:, place].min()),
+        "acting": {
+            node.name: share
+            for node, share in zip(architecture.nodes, shares, strict=True)
+            if node.behavior >= 0
+        },
+    }
+
+
+def travelled(run: Run, place: int) -> float:
+    """Metres that a robot drove, over ground."""
+    path = run.world.poses[:, len(run.layout.things) + place, :2]
+    return float(np.hypot(*np.diff(path, axis=0).T).sum())
+
+
+def touched(run: Run, place: int) -> tuple[int, float]:
+    """How often a robot began to touch something, and for what share of the time it did."""
+    touches = run.world.contacts[:, place] > 0
+    begins = touches & ~np.concatenate([[False], touches[:-1]])
+    return int(begins.sum()), float(touches.mean())
+
+
+def acting_shares(track: RobotTrack, duration: float) -> list[float]:
+    """For each node the share of the time in which it acted."""
+    acting = track.acting
+    lasts = np.diff(np.append(acting.times, duration))
+    shares: list[float] = ((acting.acts * lasts[:, np.newaxis]).sum(axis=0) / duration).tolist()
+    return shares
