@@ -44,6 +44,9 @@ ROUGH: Final = 0.95
 """What explains less than this share is not all that there is;"""
 ALIKE: Final = 0.02
 """and what explains less by no more than this is as good."""
+ALONE: Final = 0.5
+"""No single window holds more than this share of a gain: it may be a jump that came between samples
+or somebody's hand."""
 HINT: Final = 1.5
 """A linear forecast of the gain below this is not followed up."""
 MATTERS: Final = 0.05
@@ -62,7 +65,8 @@ PLIANT: Final = (CandidateKind.REGION, CandidateKind.TERM)
 class Tried:
     """One candidate beside those taken before. gain: log-likelihood, its penalty taken off.
 
-    share: of the held-out squared error beyond noise that it explains. gains: (W,) per window.
+    share: of the held-out squared error beyond noise that it explains. is_spread: no window alone
+    is most of the gain.
     """
 
     effect: Effect
@@ -71,6 +75,7 @@ class Tried:
     gain: float
     share: float
     matters: bool
+    is_spread: bool
 
 
 @final
@@ -268,6 +273,7 @@ def _tried(
         gain=float(np.sum(gains) - len(effect.numbers) - np.log(effect.best_of)),
         share=min(float(np.sum(explained) / max(float(np.sum(beyond)), 1e-300)), 1.0),
         matters=_matters(scene, reference, held_out, tolerance, MATTERS),
+        is_spread=float(np.max(gains)) <= ALONE * float(np.sum(gains)),
     )
 
 
@@ -296,7 +302,8 @@ def _ranked(scene: Scene, tried: list[Tried], base: Fit) -> Step:
     head = (slips or same)[0]
     alike = [t for t in order if t not in same and _is_as_good(t, top)]
     rest = [t for t in order if t is not head]
-    is_taken = head.gain >= CLEAR and head.matters and _is_sure(scene, head)
+    is_clear = head.gain >= CLEAR and head.is_spread
+    is_taken = is_clear and head.matters and _is_sure(scene, head)
     others = tuple(t for t in same if t is not head)
     return Step((head, *rest), others, tuple(alike), is_taken=is_taken)
 
