@@ -25,6 +25,7 @@ from verifier.diagnosis.profiled import setting_of
 from verifier.diagnosis.refitting import refitted
 from verifier.diagnosis.reporting import candidates_of, departures, reading_of, regions, told_of
 from verifier.diagnosis.rereading import Reread, reread
+from verifier.diagnosis.rivals import still_alike
 from verifier.diagnosis.scene import Scene, scene_of
 from verifier.diagnosis.selection import CLEAR, Selection, select
 from verifier.fidelity.judging.evidence import evidence_of
@@ -62,14 +63,20 @@ def _of_states(
     if study is None or scene is None or scene.windows < FEWEST:
         windows = 0 if scene is None else scene.windows
         return _of_unjudged(program, fidelity, trace, report, windows)
-    selection = select(scene, effects_of(scene, report.verdict), fidelity.tolerance)
+    selection = _selected(scene, report, fidelity)
     if report.verdict is Verdict.PASS and selection.share(scene) < PARTLY:
         selection = selection.without()
     best = _better_reading(program, fidelity, trace, scene, selection, report)
     if best is None:
         return _told(program, fidelity, scene, study, selection, report, None)
-    other = select(best.scene, effects_of(best.scene, report.verdict), fidelity.tolerance)
+    other = _selected(best.scene, report, fidelity)
     return _told(program, fidelity, best.scene, best.study, other, report, best)
+
+
+def _selected(scene: Scene, report: Report, fidelity: Fidelity) -> Selection:
+    """What explains the departure, of all that is tried."""
+    effects = effects_of(scene, report.verdict)
+    return still_alike(scene, select(scene, effects, fidelity.tolerance))
 
 
 def effects_of(scene: Scene, verdict: Verdict) -> tuple[Effect, ...]:
@@ -98,7 +105,7 @@ def _of_unjudged(
     if not found or found[0].gain < CLEAR or found[0].scene.windows < FEWEST:
         return nothing_to_tell(windows)
     best = found[0]
-    selection = select(best.scene, effects_of(best.scene, report.verdict), fidelity.tolerance)
+    selection = _selected(best.scene, report, fidelity)
     return _told(program, fidelity, best.scene, best.study, selection, report, best)
 
 
