@@ -22,6 +22,7 @@ from specc.cli.schema import schema
 from specc.cli.simulate import simulate
 from specc.cli.status import Status
 from specc.cli.verify import verify
+from specc.cli.wiring import wiring
 
 EPILOG = (
     "Exit status: 0 yes, 1 no (not faithful), 2 bad spec, trace or usage, "
@@ -61,6 +62,7 @@ app.command("check")(check)
 app.command("compile")(compile_)
 app.command("simulate")(simulate)
 app.command("portrait")(portrait)
+app.command("wiring")(wiring)
 app.command("compare")(compare)
 app.command("verify")(verify)
 app.command("fit")(fit)
