@@ -10,6 +10,7 @@ from dataclasses import replace
 from runtime.program import Program
 from verifier.diagnosis.diagnose import diagnose
 from verifier.fidelity.judging.stuck import with_stuck
+from verifier.fidelity.judging.verdict import advice_on_open
 from verifier.fidelity.stretches.needs import needs_of, parts_of
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.limits.limits import limits_of
@@ -56,7 +57,9 @@ def explain(
         return Examination(with_stuck(report, needs), origins=origins)
     tell("why it departs")
     diagnosis = diagnose(program, trace, study, report)
-    advisory = with_stuck(advised(report, diagnosis, judgement.switching), needs)
+    moot = advice_on_open(report.variables, report.trace.judged)
+    known = advised(report, diagnosis, judgement.switching, program, moot)
+    advisory = with_stuck(known, needs)
     tell("features of the field")
     features = compare_features(program, trace, study)
     partial = Examination(advisory, judgement.switching, diagnosis, None, features, None, origins)

@@ -32,7 +32,7 @@ def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
     found = _found(program, diagnosis)
     aims = tuple(each for each in found if not isinstance(each, str))
     beyond = tuple(each for each in found if isinstance(each, str))
-    if diagnosis.told is Told.STRUCTURE_DIFFERS and not found:
+    if diagnosis.told in {Told.STRUCTURE_DIFFERS, Told.LOG_DIFFERS} and not found:
         beyond = diagnosis.sentences[:2]
     choices = (*_choices(diagnosis), *(_either(*each) for each in _late_instead(diagnosis)))
     left = _left(diagnosis) if aims else ()

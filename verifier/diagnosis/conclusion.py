@@ -62,9 +62,7 @@ def concluded(
         return _unexplained(after, differs, report)
     told = _told(selection, share, taken, departs, differs)
     is_passed = report.verdict is Verdict.PASS
-    opening = _opening(told, share, taken, is_over=bool(departs), is_passed=is_passed)
-    is_misread = not selection.taken and not departs
-    said = [f"{MISREAD} {taken[0].label}" if is_misread else opening]
+    said = [_opening(told, share, taken, is_over=bool(departs), is_passed=is_passed)]
     said += [each.sentence for each in taken]
     for step in selection.taken:
         said += _in_other_words(step, candidates, is_only=len(taken) == 1)
@@ -91,9 +89,9 @@ def _told(
         return Told.STRUCTURE_DIFFERS if differs else Told.CANNOT_TELL
     if any(_is_open(step) for step in selection.taken[:1]):  # later ones add to the first
         return Told.CANNOT_TELL
-    if departs or any(each.kind not in SCALARS for each in taken):
+    if departs or any(not (each.is_of_log or each.kind in SCALARS) for each in taken):
         return Told.STRUCTURE_DIFFERS
-    return Told.SAME_STRUCTURE
+    return Told.LOG_DIFFERS if any(each.is_of_log for each in taken) else Told.SAME_STRUCTURE
 
 
 def _is_open(step: Step) -> bool:
@@ -150,8 +148,14 @@ def _opening(
         (told is Told.CANNOT_TELL, AS_GOOD),
         (is_passed, "what differs is allowed; it would be less with"),
         (is_long, LONG_CHAIN),
+        (told is Told.LOG_DIFFERS, MISREAD),
     )
     said = next((words for holds, words in cases if holds), "")
+    if said == MISREAD:
+        labels = [each.label for each in taken if each.is_of_log]
+        own = [each.label for each in taken if not each.is_of_log]
+        beside = f"; and other numbers: {', '.join(own)}" if own else ""
+        return f"{said} {', '.join(labels)}{beside}"
     return f"{said} {', '.join(labels)}" if said else opening(told, labels)
 
 

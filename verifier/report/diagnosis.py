@@ -15,13 +15,15 @@ from verifier.report.report import Interval, RegionMean, Standing
 class Told(StrEnum):
     """What the diagnosis says as a whole.
 
-    SAME_STRUCTURE: moving numbers of the spec explains what departs. STRUCTURE_DIFFERS: it does
-    not; the first candidates say what would, if anything does. CANNOT_TELL: the trace does not
-    decide between explanations, or is too short to.
+    SAME_STRUCTURE: moving numbers of the spec explains what departs. LOG_DIFFERS: an entry of
+    `trace:` with another delay, sign, unit, scale or offset does. STRUCTURE_DIFFERS: neither does;
+    the first candidates say what would, if anything does. CANNOT_TELL: the trace does not decide
+    between explanations, or is too short to.
     """
 
     NO_DIFFERENCE = "no difference"
     SAME_STRUCTURE = "same structure"
+    LOG_DIFFERS = "log differs"
     STRUCTURE_DIFFERS = "structure differs"
     CANNOT_TELL = "cannot tell"
 
@@ -78,6 +80,16 @@ class CandidateKind(StrEnum):
     REGION = "in one region"
     TERM = "further term"
     GUARD = "guard"
+
+
+OF_READINGS: Final = (
+    CandidateKind.LATE_LOG,
+    CandidateKind.CLOCK_OFFSET,
+    CandidateKind.SIGN,
+    CandidateKind.UNIT_SLIP,
+    CandidateKind.SWAPPED_AXES,
+    CandidateKind.EXCHANGED_VALUES,
+)
 
 
 @final
@@ -161,6 +173,12 @@ class Candidate:
     leaves: str = ""
     slip: str = ""
     parameter: ParameterKind | None = None
+
+    @property
+    def is_of_log(self) -> bool:
+        """Whether it is about how the log tells what the robot does, not about the robot."""
+        is_reading = self.kind in OF_READINGS and self.parameter is not ParameterKind.RATE_GAIN
+        return is_reading or self.parameter in OF_SENSORS
 
 
 @final

@@ -74,15 +74,25 @@ def _is_open(result: VariableResult) -> bool:
 
 def _advice(results: tuple[VariableResult, ...], coverage: Coverage, judged: float) -> list[str]:
     """What would decide: what no data would mend first, then where to drive, then how long."""
+    special, more = _of_open(results, judged)
+    return special + ([] if coverage.is_reached else sentences.unseen(coverage)) + more
+
+
+def advice_on_open(results: tuple[VariableResult, ...], judged: float) -> frozenset[str]:
+    """All that is advised about variables whose verdict is open; judged: seconds."""
+    special, more = _of_open(results, judged)
+    return frozenset((*special, *more))
+
+
+def _of_open(results: tuple[VariableResult, ...], judged: float) -> tuple[list[str], list[str]]:
+    """What no data would mend, and how much data would decide the others."""
     advice: list[str] = []
     short: list[VariableResult] = []
     for result in filter(_is_open, results):
         special = sentences.too_noisy(result) or sentences.allow_scatter(result)
         advice += special
         short += [] if special else [result]
-    if not coverage.is_reached:
-        advice += sentences.unseen(coverage)
-    return advice + sentences.more_data(short, judged)
+    return advice, sentences.more_data(short, judged)
 
 
 def _failed(evidence: Evidence, failed: list[VariableResult], units: dict[str, Unit]) -> Finding:
