@@ -1,5 +1,7 @@
 """The sentences of a report's page: what numbers mean and how to read its figures."""
 
+import math
+
 from runtime.program import Unit
 from specc.figures.quantities import number, quantity, seconds
 from verifier.report.report import Coverage, Interval, RegionMean, Report, VariableResult
@@ -8,8 +10,10 @@ from verifier.report.wording import digits_of, percent
 
 
 def ranged(interval: Interval, unit: Unit) -> str:
-    """An interval in the user's unit: `0.01 … 0.03 m`."""
+    """An interval in the user's unit: `0.01 … 0.03 m`; without ends it is not known."""
     ends = (interval.low / unit.scale, interval.high / unit.scale)
+    if math.isinf(ends[0]) and math.isinf(ends[1]):
+        return "not known"
     digits = digits_of(*ends)
     return f"{number(ends[0], digits)} … {quantity(interval.high, unit, digits)}"
 

@@ -1,5 +1,6 @@
 """The report's page: self-contained, well-formed, in order, and safe from hostile names."""
 
+import math
 import re
 from collections import Counter
 from dataclasses import replace
@@ -7,11 +8,13 @@ from html.parser import HTMLParser
 
 import pytest
 
+from runtime.program import Unit
 from specc.pages.report_page import report_page
+from specc.pages.sentences import ranged
 from tests.specc.examination_scenes import examination
 from tests.specc.report_scenes import coverage, report
 from verifier.report.examination import Examination
-from verifier.report.report import Verdict
+from verifier.report.report import Interval, Verdict
 
 VOID = {"meta", "br", "img", "link", "input", "hr"}
 HOSTILE = (
@@ -159,3 +162,8 @@ def test_the_same_report_gives_the_same_page() -> None:
     made = replace(report(), variables=report().variables[:1])
 
     assert report_page(Examination(made)) == report_page(Examination(made))
+
+
+def test_an_interval_of_too_few_switches_is_not_known() -> None:
+    assert ranged(Interval(-math.inf, math.inf), Unit("s", 1.0)) == "not known"
+    assert ranged(Interval(-0.1, 0.2), Unit("s", 1.0)) == "−0.1 … 0.2 s"

@@ -243,7 +243,17 @@ def test_one_turn_decides_nothing(patrol: Program) -> None:
     found = switching(patrol, drive)
 
     assert found.standing is Standing.UNDECIDED
-    assert "record more switches from forward to back" in found.advice[0]
+    assert found.advice[0].startswith("record more switches from forward to back: there was 1, 3 ")
+
+
+def test_so_few_switches_have_no_interval_and_rounding_is_no_difference(patrol: Program) -> None:
+    found = switching(patrol, patrol_log(Patrol(x1=1.55).robot(), 30.0, 3))
+
+    of_x = next(said for said in found.reasons if "whether x is right after" in said)
+    assert of_x.startswith("it is open whether x is right after going from back to forward: off by")
+    assert "off by 0 m on average over 2 switches (too few to tell), 0.05 m is allowed" in of_x
+    assert not any("unbounded" in said or "e-" in said for said in found.reasons)
+    assert any("over 3 switches (95 % interval of the delay" in said for said in found.reasons)
 
 
 def test_a_switch_beside_a_gap_is_not_judged(patrol: Program) -> None:

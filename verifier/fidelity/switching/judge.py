@@ -13,11 +13,13 @@ from verifier.fidelity.switching.sorting import missed_switches, sorted_switches
 from verifier.fidelity.switching.stays import Stay, stays_of
 from verifier.fidelity.switching.told import needs_told
 from verifier.fidelity.switching.ways import Compared, WayMeans, means_of
-from verifier.report.report import Standing
+from verifier.report.report import Interval, Standing
 from verifier.report.switching import Jump, Switch, Switching, SwitchSort, Timing, Way
 
 FEWEST = 3
 """With fewer samples there is nothing to fit."""
+ROUNDING = 1e-9
+"""Of what is allowed: so little is no difference."""
 AGAINST = {SwitchSort.UNEXPECTED, SwitchSort.MISSED, SwitchSort.WRONG_TARGET}
 
 
@@ -115,8 +117,8 @@ def _timing(means: WayMeans, standings: dict[Mean, Standing]) -> Timing | None:
         return None
     return Timing(
         count=late.count,
-        late=late.mean,
-        interval=late.interval,
+        late=_told(late.mean, late.allowed),
+        interval=_interval(late),
         allowed=late.allowed,
         basis=means.basis,
         resolution=means.resolution,
@@ -133,11 +135,20 @@ def _jump(
         unit=state.unit,
         is_reset=any(name == state.name for name, _ in setting.guards[guard].resets),
         count=mean.count,
-        error=mean.mean,
-        interval=mean.interval,
+        error=_told(mean.mean, mean.allowed),
+        interval=_interval(mean),
         tolerance=mean.allowed,
         standing=standings[mean],
     )
+
+
+def _interval(mean: Mean) -> Interval:
+    return Interval(_told(mean.interval.low, mean.allowed), _told(mean.interval.high, mean.allowed))
+
+
+def _told(value: float, allowed: float) -> float:
+    """The value; 0 where it is but the rounding of what was subtracted."""
+    return value if abs(value) > ROUNDING * allowed else 0.0
 
 
 def worst_of(standings: list[Standing]) -> Standing:

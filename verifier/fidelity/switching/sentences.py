@@ -3,7 +3,8 @@
 from collections import Counter
 
 from runtime.program import Program
-from verifier.report.report import Standing
+from verifier.fidelity.switching.means import FEWEST
+from verifier.report.report import Interval, Standing
 from verifier.report.switching import Jump, Switch, SwitchSort, Timing, Way
 from verifier.report.wording import listed, number, quantity, span
 
@@ -50,7 +51,9 @@ def _more(way: Way) -> str:
             f"log the mode more often than every {number(timing.resolution)} s: a switch {name} may"
             f" differ by {number(timing.allowed)} s"
         )
-    return f"record more switches {name}: there were {way.expected}"
+    were = "was" if way.expected == 1 else "were"
+    few = f", {FEWEST} are needed" if way.expected < FEWEST else ""
+    return f"record more switches {name}: there {were} {way.expected}{few}"
 
 
 def _taken(way: Way) -> int:
@@ -126,11 +129,10 @@ def _timing(name: str, timing: Timing) -> str:
 
 def _late(timing: Timing) -> str:
     side = "late" if timing.late >= 0.0 else "early"
-    low, high = timing.interval.low, timing.interval.high
+    interval = "" if timing.count < FEWEST else f"of the delay {_seconds(timing.interval)}"
     return (
-        f"{number(abs(timing.late))} s {side} on average over {_switches(timing.count)} (95 %"
-        f" interval of the delay {number(low)} to {number(high)} s), {number(timing.allowed)} s is"
-        f" allowed: {timing.basis}"
+        f"{number(abs(timing.late))} s {side} {_over(timing.count, interval)},"
+        f" {number(timing.allowed)} s is allowed: {timing.basis}"
     )
 
 
@@ -146,11 +148,25 @@ def _jump(name: str, jump: Jump) -> str:
 
 
 def _error(jump: Jump) -> str:
+    interval = span(jump.interval.low, jump.interval.high, jump.unit)
     return (
-        f"off by {quantity(jump.error, jump.unit)} on average over {_switches(jump.count)} (95 %"
-        f" interval {span(jump.interval.low, jump.interval.high, jump.unit)}),"
+        f"off by {quantity(jump.error, jump.unit)}"
+        f" {_over(jump.count, '' if jump.count < FEWEST else interval)},"
         f" {quantity(jump.tolerance, jump.unit)} is allowed"
     )
+
+
+def _over(count: int, interval: str) -> str:
+    """Of how many switches a mean is; so few have no interval."""
+    if count == 1:
+        return "at the one switch there was (too few to tell)"
+    if not interval:
+        return f"on average over {count} switches (too few to tell)"
+    return f"on average over {count} switches (95 % interval {interval})"
+
+
+def _seconds(interval: Interval) -> str:
+    return f"{number(interval.low)} to {number(interval.high)} s"
 
 
 def _when(way: Way, switches: tuple[Switch, ...], sort: SwitchSort) -> str:
@@ -165,7 +181,3 @@ def _when(way: Way, switches: tuple[Switch, ...], sort: SwitchSort) -> str:
 
 def _times(count: int) -> str:
     return {1: "once", 2: "twice"}.get(count, f"{count} times")
-
-
-def _switches(count: int) -> str:
-    return "1 switch" if count == 1 else f"{count} switches"
