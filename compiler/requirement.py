@@ -16,13 +16,13 @@ from spec_schema.faults import Fault
 from spec_schema.places import Path
 from spec_schema.requirement_sentences import (
     Predicate,
-    RequirementError,
     Sentence,
     is_quantity,
     names_of,
     predicates_of,
     read_requirement,
 )
+from spec_schema.requirement_words import RequirementError
 from spec_schema.suggest import did_you_mean
 from spec_schema.units import Unit, parse_quantity
 

@@ -6,17 +6,24 @@ then eventually within 2 s r.speed < 0`. A prefix reaches over the one thing tha
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final, TypeAlias, final
 
-from spec_schema.expressions.parse import parse
 from spec_schema.expressions.printers.numerals import numeral
 from spec_schema.expressions.printers.text import to_text
-from spec_schema.expressions.tree import COMPARISONS, FUNCTIONS, Apply, Expr, Name, fold, walk
-from spec_schema.faults import ExpressionError, Fault, UnitFault
-from spec_schema.requirement_words import KEYWORDS, TEMPORAL, WINDOWS, Word, words_of
+from spec_schema.expressions.tree import COMPARISONS, FUNCTIONS, Apply, Expr, Name, walk
+from spec_schema.faults import Fault, UnitFault
+from spec_schema.requirement_comparisons import compared, moved
+from spec_schema.requirement_words import (
+    KEYWORDS,
+    TEMPORAL,
+    WINDOWS,
+    RequirementError,
+    Word,
+    words_of,
+)
 from spec_schema.suggest import did_you_mean
-from spec_schema.units import parse_quantity, parse_unit, quantity_in
+from spec_schema.units import parse_unit, quantity_in
 from spec_schema.wording import quoted
 
 SECOND: Final = parse_unit("s")
@@ -51,15 +58,6 @@ class Compound:
 Sentence: TypeAlias = Predicate | Compound
 
 
-@final
-class RequirementError(Exception):
-    """A sentence that is not of the language, with its faults."""
-
-    def __init__(self, *faults: Fault) -> None:
-        self.faults = faults
-        super().__init__("; ".join(fault.message for fault in faults))
-
-
 def read_requirement(text: str) -> Sentence:
     """What a sentence says.
 
@@ -90,6 +88,16 @@ def predicates_of(sentence: Sentence) -> Iterator[Predicate]:
             yield part
         else:
             waiting.extend(reversed(part.parts))
+
+
+def names_of(sentence: Sentence) -> tuple[Name, ...]:
+    """Every name that is no quantity, where it stands."""
+    return tuple(
+        node
+        for predicate in predicates_of(sentence)
+        for node in walk(predicate.condition)
+        if isinstance(node, Name) and not is_quantity(node.name)
+    )
 
 
 def to_sentence(sentence: Sentence) -> str:
@@ -225,7 +233,7 @@ class _Reading:
         try:
             return quantity_in(word.text, SECOND)
         except UnitFault as error:
-            raise RequirementError(_moved(error.fault, word.start)) from None
+            raise RequirementError(moved(error.fault, word.start)) from None
 
     def _predicate(self) -> Sentence:
         self._refuse_misspelled()
@@ -242,7 +250,8 @@ class _Reading:
                 raise self._misplaced_window()
             remedy = "write e.g. `r.clearance > 5 cm`"
             raise self._fault("S370", f"a comparison is wanted before {self._shown()}", remedy)
-        return _compared(self._text, words)
+        condition = compared(self._text, words)
+        return _links(condition, words[0].start, words[-1].end)
 
     def _refuse_misspelled(self) -> None:
         """A bare word that is nearly a keyword."""
@@ -293,105 +302,9 @@ class _Reading:
         return RequirementError(Fault(word.start, word.end, "S372", message, remedy))
 
 
-def _compared(text: str, words: list[Word]) -> Sentence:
-    """The comparison that some words make, read as an expression with stand-ins for its names."""
-    start, end = words[0].start, words[-1].end
-    named = [word for word in words if word.is_quantity or ("." in word.text and word.is_name)]
-    stand_ins = _stand_ins([word.end - word.start for word in named], text)
-    shown, back = text[start:end], {}
-    for word, stand_in in zip(named, stand_ins, strict=True):
-        shown = shown[: word.start - start] + stand_in + shown[word.end - start :]
-        back[stand_in] = word.text
-    try:
-        tree = parse(shown)
-    except ExpressionError as error:
-        raise RequirementError(*(_named(_moved(f, start), back) for f in error.faults)) from None
-    faults = list(_bad_units([word for word in named if word.is_quantity]))
-    condition = _with_names(tree, back, start)
-    if not _is_comparison(condition):
-        remedy = "compare two quantities: `r.clearance > 5 cm`"
-        faults.append(Fault(start, end, "S374", "nothing is compared here", remedy))
-    if faults:
-        raise RequirementError(*faults)
-    return _links(condition, start, end)
-
-
 def _links(condition: Expr, start: int, end: int) -> Sentence:
     """A comparison, or the two of a chain such as `0 < x < 1`."""
     if isinstance(condition, Apply) and condition.op == "and":
         one, two = (_links(part, start, end) for part in condition.operands)
         return Compound("and", (one, two))
     return Predicate(condition, start, end)
-
-
-def _is_comparison(condition: Expr) -> bool:
-    if not isinstance(condition, Apply):
-        return False
-    if condition.op == "and":
-        return all(map(_is_comparison, condition.operands))
-    return condition.op in COMPARISONS
-
-
-def _bad_units(words: list[Word]) -> Iterator[Fault]:
-    for word in words:
-        try:
-            parse_quantity(word.text)
-        except UnitFault as error:
-            yield _moved(error.fault, word.start)
-
-
-def _stand_ins(lengths: list[int], text: str) -> list[str]:
-    """Names of given lengths, each another one, and none that stands in the text."""
-    found: list[str] = []
-    for length in lengths:
-        digits = length - 1
-        name = next(
-            name
-            for first in "QZXWKJHGYVUTSRPONMLFEDCBA"
-            for count in range(min(36**digits, 1000))
-            for name in [first + _in_base_36(count).rjust(digits, "0")]
-            if name not in found and name not in text
-        )
-        found.append(name)
-    return found
-
-
-def _in_base_36(number: int) -> str:
-    signs = "0123456789abcdefghijklmnopqrstuvwxyz"
-    return signs[number] if number < 36 else _in_base_36(number // 36) + signs[number % 36]
-
-
-def _with_names(tree: Expr, back: dict[str, str], offset: int) -> Expr:
-    """The tree with the names that were meant, placed in the whole sentence."""
-
-    def moved(node: Expr, operands: tuple[Expr, ...]) -> Expr:
-        start, end = node.start + offset, node.end + offset
-        if isinstance(node, Name):
-            return Name(back.get(node.name, node.name), start, end)
-        if isinstance(node, Apply):
-            mark = (node.mark[0] + offset, node.mark[1] + offset)
-            return Apply(node.op, operands, start, end, mark)
-        return replace(node, start=start, end=end)
-
-    return fold(tree, moved)
-
-
-def _moved(fault: Fault, by: int) -> Fault:
-    return replace(fault, start=fault.start + by, end=fault.end + by)
-
-
-def _named(fault: Fault, back: dict[str, str]) -> Fault:
-    message, remedy = fault.message, fault.help
-    for stand_in, meant in back.items():
-        message, remedy = message.replace(stand_in, meant), remedy.replace(stand_in, meant)
-    return replace(fault, message=message, help=remedy)
-
-
-def names_of(sentence: Sentence) -> tuple[Name, ...]:
-    """Every name that is no quantity, where it stands."""
-    return tuple(
-        node
-        for predicate in predicates_of(sentence)
-        for node in walk(predicate.condition)
-        if isinstance(node, Name) and not is_quantity(node.name)
-    )

@@ -56,6 +56,15 @@ class Word:
     is_name: bool = False
 
 
+@final
+class RequirementError(Exception):
+    """A sentence that is not of the language, with its faults."""
+
+    def __init__(self, *faults: Fault) -> None:
+        self.faults = faults
+        super().__init__("; ".join(fault.message for fault in faults))
+
+
 def words_of(text: str) -> tuple[list[Word], list[Fault]]:
     """The words in order, and a fault for each that belongs to another language.
 

@@ -8,12 +8,12 @@ from spec_schema.expressions.tree import Apply, Expr, Name, Number
 from spec_schema.requirement_sentences import (
     Compound,
     Predicate,
-    RequirementError,
     Sentence,
     predicates_of,
     read_requirement,
     to_sentence,
 )
+from spec_schema.requirement_words import RequirementError
 
 NAMES = ("r.x", "r.lamp.light", "crate.heading", "r2.choose.choice")
 QUANTITIES = ("5 cm", "0.1 lx", "3 m/s", "90 deg", "1.5 1/s", "2 kg*m/s^2")
