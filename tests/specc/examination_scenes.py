@@ -137,7 +137,7 @@ def candidate(kind: CandidateKind, share: float, word: str, *, is_taken: bool) -
         numbers=(number,),
         evidence=Evidence(31, share, 120.0 * share, ()),
         is_taken=is_taken,
-        alike=("late log of turn",) if is_taken else (),
+        alike=("turn logged late",) if is_taken else (),
         origin="husky_drive.yaml:21:3",
         claim=f"{kind} of turn: 0.48 s{word}",
         sentence=f"{kind} of turn: 0.48 s{word}",

@@ -346,8 +346,8 @@ def test_the_husky_without_its_delays_is_told_so_and_gets_them_back(
     [why] = told
     taken = {each.label: each.kind for each in why.candidates if each.is_taken}
     assert taken == {
-        "late log of speed": CandidateKind.LATE_LOG,
-        "late log of turn": CandidateKind.LATE_LOG,
+        "speed logged late": CandidateKind.LATE_LOG,
+        "turn logged late": CandidateKind.LATE_LOG,
     }
     [scale] = (each for each in why.refitted if each.name == "turn_scale")
     assert scale.interval.low < 0.944 < scale.interval.high

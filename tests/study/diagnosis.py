@@ -83,7 +83,7 @@ def _of_wall() -> tuple[Row, ...]:
         _wall(Wall(limit=0.3), f"saturation of {turning}", words="saturation 0.3 rad/s"),
         _wall(Wall(late=0.3), f"dead time of {turning}", words="dead time 0.3 s"),
         _wall(Wall(lag=0.3), f"lag of {turning}", words="lag 0.3 s"),
-        _wall(Wall(logged_late=0.3), "late log of wanted", words="command logged 0.3 s late"),
+        _wall(Wall(logged_late=0.3), "wanted logged late", words="command logged 0.3 s late"),
         _wall(
             Wall(patch=0.4),
             f"offset of {turning} at large distance",
@@ -126,7 +126,7 @@ def _of_drive() -> tuple[Row, ...]:
         _misread(
             DRIVE,
             lambda t: p.shifted(t, "turn", 0.3),
-            "late log of turn",
+            "turn logged late",
             words="turn logged 0.3 s late",
         ),
         _misread(

@@ -70,7 +70,7 @@ def concluded(
         if rivals:
             said.append(f"{_name(step.tried[0])}: {sentences.either(rivals)}")
     if selection.taken and share < PARTLY:
-        said.append(sentences.partly(share))
+        said.append(sentences.partly(share, len(taken)))
     said += sentences.afterwards(after)
     said += [each.sentence for each in differs[:1] if departs or share < PARTLY]
     beside = [each.sentence for each in moved if not each.is_moved]

@@ -25,11 +25,12 @@ def kind_of(effect: Effect, values: Values) -> CandidateKind:
 
 
 def label_of(effect: Effect, values: Values) -> str:
-    """A short name: `late log of turn`, `sign of turn`."""
+    """A short name: `turn logged late`, `sign of turn`."""
     kind, names = kind_of(effect, values), listed(list(effect.applies_to))
     if effect.is_delay:
-        is_early = kind is CandidateKind.LATE_LOG and values[0] > 0.0
-        return f"{'early log' if is_early else kind} of {names}"
+        if kind is CandidateKind.LATE_LOG:
+            return f"{names} logged {'early' if values[0] > 0.0 else 'late'}"
+        return f"{kind} of {names}"
     if kind is CandidateKind.SIGN:
         return f"sign of {names}"
     if kind is CandidateKind.UNIT_SLIP:

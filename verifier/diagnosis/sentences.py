@@ -118,8 +118,13 @@ def evidence(share: float, before: tuple[str, ...]) -> str:
 
 def in_other_words(said: list[str]) -> str:
     """Explanations that leave the very same trace."""
-    more = f", or {len(said) - MOST} others" if len(said) > MOST else ""
+    more = _or_more(len(said) - MOST)
     return f"in other words, which leave the same trace: {', or '.join(said[:MOST])}{more}"
+
+
+def _or_more(count: int) -> str:
+    """`, or 2 others`; nothing where there are none."""
+    return f", or {count} other{'s' if count > 1 else ''}" if count > 0 else ""
 
 
 def still(left: str, before: tuple[str, ...]) -> str:
@@ -138,15 +143,18 @@ def of_reading(reading: Reading, share: float, *, was_judged: bool) -> str:
     return f"{said}, and the spec explains {percent(max(share, 0.0))} of how the robot moves"
 
 
-def partly(share: float) -> str:
-    """An explanation that leaves most of it open."""
-    return f"that is {percent(max(share, 0.0))} of the error beyond noise; the rest is unexplained"
+def partly(share: float, count: int) -> str:
+    """That `count` explanations leave most of it open."""
+    if count == 1:
+        return "most of the error stays unexplained"
+    of = f"{percent(max(share, 0.0))} of the error beyond noise over the whole trace"
+    return f"together they explain {of}; the rest stays unexplained"
 
 
 def either(labels: list[str]) -> str:
     """Explanations that are as good."""
     shown = labels[:MOST]
-    more = f", or {len(labels) - MOST} others" if len(labels) > MOST else ""
+    more = _or_more(len(labels) - MOST)
     return f"this trace can't tell it from {' or '.join(shown)}{more}"
 
 

@@ -77,7 +77,7 @@ def _of_diagnosis(report: Report, diagnosis: Diagnosis, program: Program | None)
     if all(_is_own(each, own) for each in taken):
         return [_of_numbers(taken, own, fit)]
     named = listed([_number(each, own) for each in taken])
-    return [f"mend the robot, or put into the spec's field what explains it: {named}"]
+    return [f"mend the robot, or write into the spec what explains it: {named}"]
 
 
 def _of_numbers(taken: list[Candidate], own: set[str], fit: str) -> str:

@@ -29,7 +29,7 @@ def _worst(result: VariableResult, units: dict[str, Unit]) -> str:
     """In which situation it is worst, and in which direction; none may stand out."""
     region = result.worst
     if region is None or abs(region.mean) <= result.tolerance:
-        return ": windows that are alike err alike"
+        return ": windows in the same situation err alike"
     side = "above" if region.mean > 0.0 else "below"
     ends = sorted([abs(region.interval.low), abs(region.interval.high)])
     place = where(region, result.unit, units)
@@ -53,7 +53,9 @@ def where(region: RegionMean, unit: Unit, units: dict[str, Unit]) -> str:
     if region.moved is not None:
         told.append(f"it should {_way(region.moved, unit)}")
     if region.hurried is not None:
-        told.append(f"its rate should {'rise' if region.hurried > 0.0 else 'fall'} meanwhile")
+        told.append(
+            f"its rate should {'rise' if region.hurried > 0.0 else 'fall'} during the window"
+        )
     return f"where {listed(told)}" if told else ""
 
 

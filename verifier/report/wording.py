@@ -53,8 +53,12 @@ def span(low: float, high: float, unit: Unit) -> str:
 
     >>> span(0.1, 0.2, Unit("m", 1.0)), span(291.72, 292.34, Unit("K", 1.0))
     ('0.1 to 0.2 m', '291.7 to 292.3 K')
+    >>> span(0.0, math.inf, Unit("m", 1.0))
+    '0 m or more'
     """
     ends = (low / unit.scale, high / unit.scale)
+    if math.isinf(high):
+        return "not known" if math.isinf(low) else f"{quantity(low, unit)} or more"
     digits = digits_of(*ends)
     return f"{number(ends[0], digits)} to {number(ends[1], digits)}{suffix(unit)}"
 

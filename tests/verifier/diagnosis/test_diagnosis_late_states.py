@@ -62,8 +62,8 @@ def test_delays_are_called_late_or_early_by_their_sign() -> None:
     found = effects_on_clocks(scene(table(program_of("drive")), drive(Drive(), 1, seconds=30.0)))
     heading = found[-1]
 
-    assert label_of(heading, (-0.3,)) == "late log of heading"
-    assert label_of(heading, (0.3,)) == "early log of heading"
+    assert label_of(heading, (-0.3,)) == "heading logged late"
+    assert label_of(heading, (0.3,)) == "heading logged early"
 
 
 def test_all_states_late_is_all_inputs_late_in_other_words() -> None:
@@ -72,7 +72,7 @@ def test_all_states_late_is_all_inputs_late_in_other_words() -> None:
     found = diagnosed(table(program_of("wall_follow.yaml")), trace)
 
     assert taken(found) == [(CandidateKind.DEAD_TIME, ("wanted",))]
-    assert found.candidates[0].alike[0] == "late log of distance and heading"
+    assert found.candidates[0].alike[0] == "distance and heading logged late"
     (other,) = (s for s in found.sentences if s.startswith("in other words"))
     assert "the log tells distance and heading 0.3" in other
 

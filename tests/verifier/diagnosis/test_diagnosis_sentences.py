@@ -37,7 +37,7 @@ def region(**changes: object) -> RegionMean:
     [
         ({}, "heading still differs"),
         ({"moved": -0.38}, "heading still differs where it should fall by 0.38 rad"),
-        ({"hurried": 0.2}, "heading still differs where its rate should rise meanwhile"),
+        ({"hurried": 0.2}, "heading still differs where its rate should rise during the window"),
         (
             {"bounds": {"turn": (0.1, 0.3)}, "moved": 0.2},
             "heading still differs where turn is 0.1 to 0.3 rad/s and it should rise by 0.2 rad",
@@ -89,7 +89,7 @@ def test_only_a_delay_is_named_by_its_direction() -> None:
     late = effect(CandidateKind.DEAD_TIME, "turn", is_delay=True)
 
     assert label_of(late, (0.5,)) == "dead time of turn"
-    assert label_of(late, (-0.5,)) == "late log of turn"
+    assert label_of(late, (-0.5,)) == "turn logged late"
     assert label_of(replace(late, is_delay=False), (0.5,)) == "label"
 
 
@@ -141,4 +141,4 @@ def test_a_number_of_a_guard_that_has_a_name_is_what_fit_edits(failed: Report) -
 def test_a_bare_number_of_a_guard_is_to_be_settled_by_hand(failed: Report) -> None:
     (first, *_) = advised(failed, of_a_guard("22"), None).advice
 
-    assert first == "settle first what explains it: 22 (1.6 m)"
+    assert first == "mend the robot, or write into the spec what explains it: 22 (1.6 m)"

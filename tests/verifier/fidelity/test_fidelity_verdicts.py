@@ -401,7 +401,7 @@ def test_unrest_beyond_the_tolerance_condemns_no_robot(scenes: ModuleType) -> No
     assert all(report.verdict is Verdict.INCONCLUSIVE for report in reports)
     scatters = [report.variables[0].scatter for report in reports]
     assert np.mean(scatters) == pytest.approx(0.197, rel=0.1)
-    assert "nothing foretells by how much" in reports[0].reasons[0]
+    assert "but not alike in the same situation" in reports[0].reasons[0]
     assert "fidelity: {scatter: {x:" in reports[0].advice[0]
 
 

@@ -87,7 +87,7 @@ def test_a_departure_says_how_much_of_it_and_what_is_allowed() -> None:
         ({"moved": -0.38}, "where it should fall by 0.38 rad, it ends 0.034 rad above"),
         ({"moved": 0.38}, "where it should rise by 0.38 rad, it ends"),
         ({"moved": 0.0}, "where it should stay, it ends"),
-        ({"hurried": -0.01}, "where its rate should fall meanwhile, it ends"),
+        ({"hurried": -0.01}, "where its rate should fall during the window, it ends"),
         ({"bounds": {"turn": (0.1, 0.3)}}, "where turn is 0.1 to 0.3 rad/s, it ends"),
         (
             {"values": {"mode": "back"}, "bounds": {"turn": (0.1, 0.3)}},
@@ -107,7 +107,7 @@ def test_a_mean_that_is_allowed_is_not_told_as_what_is_wrong() -> None:
     said = told(worst=part(mean=0.012, moved=0.3, interval=Interval(0.01, 0.014)))
 
     assert "0.012" not in said
-    assert said.endswith("windows that are alike err alike")
+    assert said.endswith("windows in the same situation err alike")
 
 
 def test_a_worst_situation_beyond_the_departure_is_no_share_of_it() -> None:

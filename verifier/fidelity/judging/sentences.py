@@ -95,7 +95,7 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
     )
     if figure.interval.low > limit:
         return (
-            f"{departs}, but nothing foretells by how much: single windows scatter by"
+            f"{departs}, but not alike in the same situation: windows scatter by"
             f" {quantity(result.scatter, unit)}, and only {quantity(result.systematic, unit)} is"
             " shown to repeat; the robot is restless, or something moves it that the spec does"
             " not know"
