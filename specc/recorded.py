@@ -6,7 +6,9 @@ from pathlib import Path
 
 from runtime.program import Program
 from runtime.recording.behavior import recorded
+from runtime.recording.scenario_run import recorded_run
 from runtime.rollout import Rollout
+from runtime.run import Run
 from specc.files import unknown_suffix, write_atomically
 
 
@@ -20,6 +22,14 @@ def record(program: Program, rollout: Rollout, path: Path | str) -> None:
             write_atomically(path, _csv(program, rollout).encode())
         case _:
             raise unknown_suffix(path, ".mcap, .csv")
+
+
+def record_run(run: Run, path: Path | str) -> None:
+    """Write the run of a scenario as .mcap, with all that it was made of attached."""
+    path = Path(path)
+    if path.suffix.lower() != ".mcap":
+        raise unknown_suffix(path, ".mcap")
+    write_atomically(path, recorded_run(run))
 
 
 def _csv(program: Program, rollout: Rollout) -> str:

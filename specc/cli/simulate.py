@@ -13,6 +13,8 @@ from specc.cli.warming import warmed
 
 ALONE: Final = "20 s"
 """How long a behavior alone runs, where nothing is said."""
+LIGHT_EVERY: Final = 1.0
+"""Seconds between two recorded pictures of the light on the floor."""
 
 
 def simulate(
@@ -100,6 +102,7 @@ def _scenario(
     allow_code: bool,
 ) -> int:
     from specc.files import require_suffix
+    from specc.recorded import record_run
     from specc.simulating import simulate_scenario
     from specc.texts.simulation import simulation_record, simulation_text
     from verifier.report.requirement_results import Outcome
@@ -117,8 +120,18 @@ def _scenario(
             bar(what, done, of)
 
         made = simulate_scenario(
-            spec, seed=seed, duration=duration, allow_code=allow_code, progress=tell
+            spec,
+            seed=seed,
+            duration=duration,
+            allow_code=allow_code,
+            light_every=None if output is None else LIGHT_EVERY,
+            progress=tell,
         )
+        if output is not None:
+            tell("recording", 1, 1)
+            record_run(made.run, output)
+    if output is not None:
+        say(f"wrote {output}", "bold")
     if form is Format.JSON:
         print_json(simulation_record(made, took))
     else:

@@ -1,0 +1,117 @@
+"""A run of a scenario as an MCAP file: what was said, what is drawn, and what it was made of.
+
+The file carries the compiled scenario and the artifact of each robot's architecture, so that it can
+be judged by itself. The same run gives the same bytes.
+"""
+
+import json
+from typing import Final
+
+import numpy as np
+
+from runtime import architecture_artifact
+from runtime.program import Unit
+from runtime.program_json import to_plain
+from runtime.recording.drawn import tell_drawn
+from runtime.recording.foxglove import classes
+from runtime.recording.messages import Messages, nanoseconds
+from runtime.recording.nodes import tell_robot
+from runtime.recording.tables import Field, tell_rows
+from runtime.requirement import Requirement
+from runtime.run import Run
+from runtime.scenario import Scenario
+from runtime.world.model import World
+
+ARCHITECTURE: Final = "application/vnd.specc"
+DOCUMENT: Final = "application/json"
+FORMAT: Final = 1
+"""The version of the scenario's document."""
+WARNING: Final = 3
+"""`Log.WARNING`."""
+
+
+def recorded_run(run: Run) -> bytes:
+    """The bytes of an MCAP file that holds the run."""
+    messages = Messages()
+    tell_drawn(messages, run)
+    for robot, track in zip(run.scenario.robots, run.robots, strict=True):
+        tell_robot(messages, robot, track)
+    _tell_measures(messages, run)
+    _tell_events(messages, run)
+    attachments = [
+        (f"{robot.name}.specc", ARCHITECTURE, _artifact(run, place))
+        for place, robot in enumerate(run.scenario.robots)
+    ]
+    document = (f"{run.scenario.name}.scenario.json", DOCUMENT, scenario_document(run.scenario))
+    about = {
+        "scenario": run.scenario.name,
+        "seed": str(run.scenario.seed),
+        "duration": repr(run.duration),
+        "state_hash": run.digest.hex(),
+    }
+    return messages.written([document, *attachments], about)
+
+
+def scenario_document(scenario: Scenario) -> bytes:
+    """The compiled scenario as JSON; architectures are attachments of their own, `ROBOT.specc`."""
+    requirements = [to_plain(Requirement, one) for one in scenario.requirements]
+    document = {
+        "format": FORMAT,
+        "name": scenario.name,
+        "about": scenario.about,
+        "duration": scenario.duration,
+        "step": scenario.step,
+        "seed": scenario.seed,
+        "beginnings": scenario.beginnings,
+        "requirements": requirements,
+        "world": to_plain(World, scenario.world),
+        "robots": {
+            robot.name: {"architecture": f"{robot.name}.specc"} for robot in scenario.robots
+        },
+    }
+    text = json.dumps(document, sort_keys=True, allow_nan=False, ensure_ascii=False, indent=1)
+    return (text + "\n").encode()
+
+
+def _artifact(run: Run, place: int) -> bytes:
+    robot = run.scenario.robots[place]
+    return architecture_artifact.to_bytes(robot.architecture, robot.body)
+
+
+def _tell_measures(messages: Messages, run: Run) -> None:
+    """What the world knows of each robot, at the instants of its poses."""
+    world = run.world
+    here = np.searchsorted(world.close_times, world.times)
+    metres, lux = Unit("m", 1.0), Unit("lx", 1.0)
+    fields = [
+        Field("clearance", metres, about="to the nearest other thing or wall"),
+        Field("contacts", about="how many things it touches"),
+        Field("light", lux, about="at its middle"),
+        Field("speed", Unit("m/s", 1.0)),
+        Field("turn", Unit("rad/s", 1.0)),
+    ]
+    for place, robot in enumerate(run.scenario.robots):
+        rows = np.column_stack(
+            [
+                world.clearance[here, place],
+                world.contacts[here, place],
+                world.light[:, place],
+                world.motions[:, place],
+            ]
+        )
+        tell_rows(messages, f"/world/{robot.name}", fields, world.times, rows)
+
+
+def _tell_events(messages: Messages, run: Run) -> None:
+    """What should not pass in silence, with jams where they begin."""
+    told = [(event.time, event.robot, f"{event.what}: {event.where}") for event in run.events]
+    for jam in run.audit.jams:
+        held = f" at {jam.thing}" if jam.thing else ""
+        told.append((jam.begin, jam.robot, f"{jam.cause}{held}, for {jam.end - jam.begin:.1f} s"))
+    if not told:
+        return
+    channel = messages.drawn_topic("/events", "Log")
+    for time, robot, text in sorted(told):
+        log = classes()["Log"](level=WARNING, message=text, name=robot)
+        log.timestamp.seconds, log.timestamp.nanos = divmod(nanoseconds(time), 10**9)
+        messages.draw(channel, time, log)
