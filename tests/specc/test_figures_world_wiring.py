@@ -85,7 +85,7 @@ def test_three_parallel_behaviors_offer_their_controls_to_nobody() -> None:
 def test_the_text_says_who_sets_what() -> None:
     text = summary(architecture("thesis_3_3"))
 
-    assert "control near from mission.careful or mission.eager (0.5 m or 0.2 m)" in text
+    assert "control near from mission.careful or mission.eager (0.4 m or 0.2 m)" in text
     assert "chooses home: seek.acts, seek.speed" in text
     assert "base.turn: priority (avoid, seek, follow); at rest: stop" in text
 

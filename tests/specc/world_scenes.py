@@ -1,0 +1,50 @@
+"""A run by hand, as pictures draw it: one robot drives along x, pushes a crate and is stuck."""
+
+import numpy as np
+
+from runtime.world.model import Disc, Polygon, Shape
+from specc.figures.scene import NOBODY, Glow, Item, Lamp, Mark, Outcome, Scene, Trails
+
+SQUARE = Shape((), (Polygon(((-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1))),))
+ROUND = Shape((Disc(0.0, 0.0, 0.12),), ())
+
+
+def scene(*, lit: bool = True) -> Scene:
+    xs, ys = np.linspace(0.05, 3.95, 40), np.linspace(0.05, 1.95, 20)
+    lux = 5.0 / ((xs[None, :] - 3.5) ** 2 + (ys[:, None] - 1.0) ** 2 + 0.2)
+    return Scene(
+        title="drive",
+        about="One robot drives along a corridor.",
+        arena=np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]]),
+        things=(Item("desk", SQUARE, is_fixed=True), Item("crate", SQUARE)),
+        robots=(Item("r", ROUND),),
+        lamps=(Lamp("bulb", 3.5, 1.0), Lamp("torch", 0.0, 0.1, on=1)),
+        glow=Glow(xs, ys, lux) if lit else None,
+    )
+
+
+def trails(seconds: float = 12.0, rate: float = 50.0) -> Trails:
+    times = np.arange(round(seconds * rate) + 1) / rate
+    count = len(times)
+    x = 0.3 + 2.0 * times / seconds
+    robots = np.zeros((count, 1, 3))
+    robots[:, 0, 0], robots[:, 0, 1] = x, 1.0 + 0.2 * np.sin(times)
+    things = np.zeros((count, 2, 3))
+    things[:, 0, :2] = 1.0, 1.8
+    things[:, 1, 0], things[:, 1, 1] = np.maximum(1.5, x + 0.22), 1.0
+    acting = np.full((count, 1), NOBODY)
+    acting[count // 4 :] = 0
+    acting[count // 2 :] = 1
+    return Trails(
+        times=times,
+        things=things,
+        robots=robots,
+        doers=(("seek", "avoid"),),
+        acting=acting,
+        contacts=(Mark(0, 6.0, 1.3, 1.0), Mark(0, 6.1, 1.302, 1.0)),
+        jams=(Mark(0, 10.0, 1.9, 1.0, 12.0),),
+        outcomes=(
+            Outcome("always r.clearance > 1 cm", holds=False, margin="robustness −1 cm"),
+            Outcome("eventually r.x > 2 m", holds=True),
+        ),
+    )
