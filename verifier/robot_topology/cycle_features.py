@@ -128,11 +128,12 @@ def _manner(feature: ComparedFeature, *, is_seen: bool) -> str:
     if is_seen:
         return f"the robot makes {feature.visits} laps with a"
     if feature.standing is FeatureStanding.NOT_VISITED:
-        return f"not visited: the robot makes {_few(feature.visits)} of it in this trace"
+        return f"not visited: the robot makes {_few(feature.visits)}"
     return "the field refitted to the robot has one with a"
 
 
 def _few(laps: int) -> str:
     if laps == 0:
-        return "no settled lap"
-    return f"only {laps} settled lap{'' if laps == 1 else 's'}, three are needed,"
+        return "no settled lap of it in this trace"
+    many = "lap" if laps == 1 else "laps"
+    return f"only {laps} settled {many} of it in this trace (three are needed)"

@@ -102,7 +102,8 @@ def test_intervals_of_a_cycle_with_corners_hold_the_truth(scenes: ModuleType) ->
 def test_too_few_laps_are_counted_aloud(scenes: ModuleType) -> None:
     found = _cycle(scenes, _heated(22.0, 0.1, 9.0, 0.05, 4))
     assert found.standing is FeatureStanding.NOT_VISITED
-    assert "only 1 settled lap of it" in found.sentence.replace(", three are needed,", "")
+    said = "not visited: the robot makes only 1 settled lap of it in this trace (three are needed)."
+    assert found.sentence == f"Stable cycle of period 2.877 s: {said}"
 
 
 def test_a_lap_that_takes_another_way_is_none() -> None:
