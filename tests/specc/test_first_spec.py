@@ -13,6 +13,7 @@ from spec_schema.load import load
 from specc.first_spec.written import spec_for
 from specc.verifying import verify
 from verifier.traces.inventory import FieldInfo, Inventory, TopicInfo, inspect
+from verifier.traces.trace import Loss
 
 TIMES = [0.05 * i for i in range(600)]
 
@@ -139,9 +140,17 @@ def measured(path: str) -> FieldInfo:
     return FieldInfo(path, 0.0, -1.0, 1.0, ())
 
 
-def test_a_log_without_a_readable_message_is_told(tmp_path: Path) -> None:
+def test_a_log_in_which_nothing_changes_is_told(tmp_path: Path) -> None:
     log = tmp_path / "run.csv"
     log.write_text("t,x\n0,1\n1,1\n2,1\n")
 
-    with pytest.raises(SpecError, match="no number that changes"):
+    with pytest.raises(SpecError, match=r"(?s)V344.*no number that changes"):
         spec_for(inspect(log), "run")
+
+
+def test_a_log_without_a_readable_message_is_told_with_what_was_lost() -> None:
+    losses = (Loss("torn chunk", 2, "at byte 40"),)
+    found = Inventory("run.mcap", "MCAP", 0.0, 0.0, 0, 1000, "", (), losses, ())
+
+    with pytest.raises(SpecError, match=r"(?s)V306.*no message.*torn chunk: 2 \(at byte 40\)"):
+        spec_for(found, "run")
