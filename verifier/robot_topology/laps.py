@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from runtime.arrays import Array
+from verifier.flags import runs_of
 from verifier.report.features import Estimate
 from verifier.robot_topology.intervals import student
 from verifier.robot_topology.scene import Scene, Stretch
@@ -90,7 +91,7 @@ def settled_runs(
 ) -> tuple[Laps, ...]:
     """Each run of good laps between `passages` (sections, k + 1), without those that settle."""
     found = []
-    for first, last in _runs(good):
+    for first, last in runs_of(np.array(good, dtype=np.bool_)):
         begin = first + _unsettled(stretch, passages[0, first : last + 1])
         part = passages[:, begin : last + 1]
         found.append(Laps(stretch, part[0], part, phases, doubt))
@@ -215,12 +216,6 @@ def _is_lap(stretch: Stretch, phase: Array, starts: Array, period: float) -> lis
         calm = high > low and float(np.max(steps[low:high])) < JUMP
         good.append(calm and 1.0 / SLOWEST < (last - first) / period < SLOWEST)
     return good
-
-
-def _runs(good: list[bool]) -> list[tuple[int, int]]:
-    """First and last start of each run of good laps."""
-    edges = np.flatnonzero(np.diff(np.array([False, *good, False], dtype=np.int64)))
-    return [(int(first), int(last)) for first, last in edges.reshape(-1, 2)]
 
 
 def _unsettled(stretch: Stretch, starts: Array) -> int:

@@ -12,7 +12,8 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.arrays import Array, Booleans
+from runtime.arrays import Array
+from verifier.flags import runs_of
 from verifier.report.features import Estimate
 from verifier.robot_topology.intervals import student
 from verifier.robot_topology.scene import Scene, Stretch, shortest
@@ -126,7 +127,7 @@ def _rests(scene: Scene, stretch: Stretch, settling: float) -> list[Rest]:
     allowed = np.maximum(SHARE * allowance(scene), SURE * scene.noise * np.sqrt(2.0 / span))
     calm = np.all(moved <= allowed, axis=-1)
     found = []
-    for first, last in _runs(calm):
+    for first, last in runs_of(calm):
         # Calm at i speaks of the samples i to i + 2 span; in the first span it may still settle.
         begin, end = first + span, min(last - 1 + 2 * span, count)
         begin = max(begin, _same_place(means[begin : end - span + 1], ROOM * allowed) + begin)
@@ -156,9 +157,3 @@ def _stays(scene: Scene, values: Array) -> bool:
     drift = SURE * scene.noise * np.sqrt(6.0 / len(values))
     allowed = np.maximum(SHARE * allowance(scene), drift)
     return bool(np.all(np.ptp(thirds, axis=0) <= allowed))
-
-
-def _runs(calm: Booleans) -> list[tuple[int, int]]:
-    """First and one past the last index of each run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], calm, [False]]).astype(np.int64)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -15,6 +15,7 @@ import numpy as np
 from runtime.arrays import Array, Booleans
 from runtime.program import Kind, Program, State
 from verifier.fidelity.stretches.needs import Input, Needs, held, parts_of
+from verifier.flags import runs_of
 from verifier.topology.features import Settings
 
 CELL: Final = 0.02
@@ -99,7 +100,7 @@ def _stands_still(times: Array, values: Array, width: float, seconds: float) -> 
     means = (sums[third:] - sums[:-third]) / third
     three = np.stack([means[: -2 * third], means[third:-third], means[2 * third :]])
     allowed = max(SURE * noise * np.sqrt(2.0 / third), ROUNDING * width)
-    for first, last in _runs(np.ptp(three, axis=0) <= allowed):
+    for first, last in runs_of(np.ptp(three, axis=0) <= allowed):
         low, high = first, last - 1 + 3 * third
         place = np.mean(values[low:high])
         aside = (values[max(low - third, 0) : low], values[high : high + third])
@@ -107,12 +108,6 @@ def _stands_still(times: Array, values: Array, width: float, seconds: float) -> 
             len(part) and abs(np.mean(part) - place) > SHARP * allowed for part in aside
         )
     return found
-
-
-def _runs(mask: Booleans) -> list[tuple[int, int]]:
-    """First and one past the last index of each run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int64)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def _commonest(scaled: Array) -> Array:

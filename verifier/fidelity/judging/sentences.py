@@ -7,6 +7,7 @@ import numpy as np
 from runtime.arrays import Array, Booleans
 from runtime.program import Unit
 from verifier.fidelity.judging.evidence import Evidence
+from verifier.flags import runs_of
 from verifier.report.report import (
     CellAxis,
     Coverage,
@@ -232,7 +233,7 @@ def _unseen_ranges(axis: CellAxis, empty: Booleans) -> list[str]:
     if axis.values:
         return [name for name, is_empty in zip(axis.values, empty, strict=True) if is_empty]
     edges = np.linspace(axis.low, axis.high, axis.count + 1)
-    return [span(edges[a], edges[b], axis.unit) for a, b in _runs(empty)]
+    return [span(edges[a], edges[b], axis.unit) for a, b in runs_of(empty)]
 
 
 def _declared(evidence: Evidence, result: VariableResult) -> tuple[Array, Array]:
@@ -244,9 +245,3 @@ def _declared(evidence: Evidence, result: VariableResult) -> tuple[Array, Array]
 
 def _interval(interval: Interval, unit: Unit) -> str:
     return span(interval.low, interval.high, unit)
-
-
-def _runs(flags: Booleans) -> list[tuple[int, int]]:
-    """Start and end (exclusive) of each run of true flags."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int64), [0]])))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

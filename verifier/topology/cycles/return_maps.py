@@ -11,6 +11,7 @@ from typing import Final, final
 import numpy as np
 
 from runtime.arrays import Array, Booleans, Integers
+from verifier.flags import runs_of
 from verifier.topology.cycles.sections import Lanes, Section, first_returns, points_of
 from verifier.topology.slices import Slice
 
@@ -147,8 +148,7 @@ def _continua(rows: _Rows, lengths: Array) -> Booleans:
         closes = np.abs(rows.f) <= rows.floor
     result = np.zeros_like(closes)
     for row, flags in enumerate(closes):
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-        for begin, end in edges.reshape(-1, 2):
+        for begin, end in runs_of(flags):
             if rows.s[row, end - 1] - rows.s[row, begin] > CONTINUUM * lengths[row]:
                 result[row, begin:end] = True
     return result
