@@ -1,6 +1,6 @@
 """Coverage: which cells of the declared region the judged windows went through."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import combinations
 from typing import Final
 
@@ -42,6 +42,12 @@ def left_of(labels: Iterable[str]) -> float:
     return max(0.9, min(2.4, 0.5 + 0.07 * max(map(len, labels), default=0)))
 
 
+def named_ticks(axis: Axis, places: Array, names: Sequence[str]) -> None:
+    """The names of a discrete variable's values at their places (k,); without names, numbers."""
+    if names:
+        axis.set_ticks(list(places), labels=list(names))
+
+
 def _planes(coverage: Coverage) -> list[tuple[int, int]]:
     """Pairs of axes; a lone axis is paired with itself."""
     count = len(coverage.axes)
@@ -68,10 +74,8 @@ def _plane(axes: Axes, coverage: Coverage, i: int, j: int) -> None:
 
 
 def _name(axis: Axis, shown: CellAxis) -> None:
-    """The names of a discrete variable's values instead of numbers."""
-    if shown.values:
-        centres = np.linspace(shown.low, shown.high, 2 * shown.count + 1)[1::2] / shown.unit.scale
-        axis.set_ticks(list(centres), labels=list(shown.values))
+    centres = np.linspace(shown.low, shown.high, 2 * shown.count + 1)[1::2] / shown.unit.scale
+    named_ticks(axis, centres, shown.values)
 
 
 def _seen_share(coverage: Coverage, i: int, j: int) -> Array:

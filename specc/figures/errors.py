@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from runtime.arrays import Array
 from runtime.program import Unit
-from specc.figures.coverage import left_of
+from specc.figures.coverage import left_of, named_ticks
 from specc.figures.quantities import axis_label
 from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, framed, look
 from verifier.report.report import Report, VariableResult
@@ -85,10 +85,8 @@ def draw_error_map(report: Report, variable: VariableResult) -> Figure:
 
 
 def _name(axis: Axis, report: Report, name: str) -> None:
-    """The names of a discrete variable's values instead of numbers."""
     values = _values(report, name)
-    if values:
-        axis.set_ticks(range(len(values)), labels=list(values))
+    named_ticks(axis, np.arange(float(len(values))), values)
 
 
 def _values(report: Report, name: str) -> tuple[str, ...]:
