@@ -1,6 +1,6 @@
 """What shall be moved: places in the spec with the values that the robot has there, in SI."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias, final
 
 from spec_schema.places import Path
@@ -12,7 +12,8 @@ class Aim:
     """A number at `path` that shall be `value`, known to within `half`, both in SI.
 
     name: for people. unit: of a plain number there; scale: the SI value of one of it.
-    sentence: what was found of the robot.
+    sentence: what was found of the robot. source: the recording that tells it, where there are
+    several.
     """
 
     path: Path
@@ -22,6 +23,7 @@ class Aim:
     unit: str
     scale: float
     sentence: str
+    source: str = ""
 
 
 @final
@@ -33,6 +35,7 @@ class UnitAim:
     name: str
     text: str
     sentence: str
+    source: str = ""
 
 
 AnyAim: TypeAlias = Aim | UnitAim
@@ -45,7 +48,9 @@ class Aims:
 
     beyond: what departs and no number of the spec stands for. left: what the aims would leave
     open. With either, the structure differs. choices: what the recordings can't tell. by_hand:
-    what a number would mend that stands within an expression.
+    what a number would mend that stands within an expression. witnesses: numbers that the
+    recordings tell, and that agree with the spec. contradicts: the first choices are between
+    recordings that need different numbers.
     """
 
     aims: tuple[AnyAim, ...]
@@ -53,3 +58,14 @@ class Aims:
     left: tuple[str, ...] = ()
     choices: tuple[str, ...] = ()
     by_hand: tuple[str, ...] = ()
+    witnesses: tuple[Aim, ...] = ()
+    contradicts: bool = False
+
+
+def named(aims: Aims, source: str) -> Aims:
+    """The same, each sentence and each number with the recording that tells it."""
+    lists = (aims.beyond, aims.left, aims.choices, aims.by_hand)
+    said = [tuple(f"{source}: {sentence}" for sentence in each) for each in lists]
+    moved = tuple(replace(each, source=source) for each in aims.aims)
+    witnesses = tuple(replace(each, source=source) for each in aims.witnesses)
+    return Aims(moved, said[0], said[1], said[2], said[3], witnesses)

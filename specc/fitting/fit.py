@@ -11,7 +11,7 @@ from typing import Final, final
 
 from spec_schema.load import Loaded
 from spec_schema.source import Source
-from specc.fitting.aims import Aims
+from specc.fitting.aims import Aims, named
 from specc.fitting.cases import Case, Logs, Tell, logs_of
 from specc.fitting.compiling import compiled
 from specc.fitting.drawn import redrawn
@@ -101,6 +101,9 @@ def _round(task: _Task, loaded: Loaded, cases: tuple[Case, ...]) -> _Round:
     """From the recordings as `loaded` has them judged to its edit."""
     diagnoses = [_diagnosed(case, task.tell) for case in cases]
     each = [aims_of(c.program, d) for c, d in zip(cases, diagnoses, strict=True)]
+    if len(cases) > 1:
+        sources = [case.report.trace.source for case in cases]
+        each = [named(aims, source) for aims, source in zip(each, sources, strict=True)]
     told = pooled(each)
     ways = [
         explanations_of(c.program, d, aims.aims)
@@ -167,7 +170,7 @@ def _diagnosed(case: Case, tell: Tell) -> Diagnosis:
 
 def _weighed(case: _Fit, explanations: tuple[Explanation, ...], task: _Task) -> _Fit:
     """With the edits of what explains best; with several `ways` where nothing decides."""
-    if case.told.beyond or not explanations:
+    if case.told.beyond or case.told.contradicts or not explanations:
         return case
     task.tell("weighing explanations")
     found = weighed(case.loaded, case.cases, task.logs, explanations, _departures, task.tell)
@@ -207,15 +210,31 @@ def _ended(case: _Fit, task: _Task) -> _Round:
     after = tuple(each.report for each in again)
     left = tuple(dict.fromkeys(sentence for each in again for sentence in _departures(each)))
     if left and not task.anyway:
+        spoilt = _spoilt(case.cases, again)
+        if spoilt:
+            case = replace(case, told=replace(case.told, choices=spoilt, left=left))
+            return _Round(case.ended(Outcome.CANNOT_TELL, None, after), case.loaded, case.cases)
         case = replace(case, told=replace(case.told, left=left))
         fitted = case.ended(Outcome.STRUCTURE_DIFFERS, None, after)
         return _Round(fitted, case.loaded, case.cases)
     return _Round(case.ended(Outcome.MOVED, edited, after), loaded, again)
 
 
+def _spoilt(before: Sequence[Case], after: Sequence[Case]) -> tuple[str, ...]:
+    """That recordings which keep to the spec as it is would depart from the edited one."""
+    both = zip(before, after, strict=True)
+    names = [a.report.trace.source for b, a in both if _departures(a) and not _departures(b)]
+    if not names:
+        return ()
+    what = f"these numbers do for the others, but not for {listed(names)}"
+    return (f"{what}: the recordings fall into groups; fit each group by itself",)
+
+
 def _why_not(case: _Fit) -> Outcome | None:
     """How it ends without an edit; None where there is one to try."""
     told = case.told
+    if told.contradicts:
+        return Outcome.CANNOT_TELL
     if told.beyond or told.left:
         return Outcome.STRUCTURE_DIFFERS
     if told.by_hand:

@@ -151,7 +151,8 @@ def _reasons(fitted: Fitted) -> tuple[str, ...]:
     if fitted.ways and not fitted.diff:
         return fitted.choices
     said = dict.fromkeys(move.sentence for move in fitted.moves)
-    return (*said, *fitted.choices)
+    is_open = fitted.outcome is Outcome.CANNOT_TELL
+    return (*fitted.choices, *said) if is_open else (*said, *fitted.choices)
 
 
 def _open(fitted: Fitted) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import math
 from typing import Final
 
 from runtime.program import Program
-from specc.fitting.aims import Aims, AnyAim
+from specc.fitting.aims import Aim, Aims, AnyAim
 from specc.fitting.explanations import LATE, OF_LOGS
 from specc.fitting.readings import OF_INPUTS, affine, delays, mended, own_number
 from verifier.report.diagnosis import (
@@ -36,7 +36,13 @@ def aims_of(program: Program, diagnosis: Diagnosis) -> Aims:
         beyond = diagnosis.sentences[:2]
     choices = (*_choices(diagnosis), *(_either(*each) for each in _late_instead(diagnosis)))
     left = _left(diagnosis) if aims else ()
-    return Aims(aims, beyond, left, choices, _by_hand(diagnosis))
+    return Aims(aims, beyond, left, choices, _by_hand(diagnosis), _witnesses(program, diagnosis))
+
+
+def _witnesses(program: Program, diagnosis: Diagnosis) -> tuple[Aim, ...]:
+    """Numbers of the spec that the recording tells, and would leave as they are."""
+    found = [own_number(each, program) for each in diagnosis.refitted if not each.is_moved]
+    return tuple(each for each in found if isinstance(each, Aim))
 
 
 def _by_hand(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -56,7 +62,8 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
     found: list[AnyAim | str] = []
     by_hand: set[str] = set()
     instead = dict(_late_instead(diagnosis))
-    taken = [instead.get(each, each) for each in diagnosis.candidates if each.is_taken]
+    named = [each for each in diagnosis.candidates if each.is_taken and not _is_nothing(each)]
+    taken = [instead.get(each, each) for each in named]
     found += delays([each for each in taken if each.kind in LATE], bindings)
     for each in taken:
         if each.kind in OF_LOGS and not of_rates & set(each.applies_to):
@@ -75,6 +82,13 @@ def _found(program: Program, diagnosis: Diagnosis) -> list[AnyAim | str]:
         if number.kind not in OF_INPUTS + OF_SENSORS:
             found.append(own_number(number, program))
     return found
+
+
+def _is_nothing(found: Candidate) -> bool:
+    """Whether others have taken over all of it: its numbers are back where they change nothing."""
+    return bool(found.numbers) and all(
+        each.interval.low <= each.neutral <= each.interval.high for each in found.numbers
+    )
 
 
 def _late_instead(diagnosis: Diagnosis) -> list[tuple[Candidate, Candidate]]:

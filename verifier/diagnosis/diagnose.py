@@ -147,7 +147,7 @@ def _told(
         Bench(scene, study, fidelity),
         selection,
         report.confidence,
-        with_others=report.verdict is not Verdict.PASS,
+        with_others=report.verdict is not Verdict.PASS or bool(selection.taken),
     )
     share = selection.share(scene) if best is None else 1.0
     if best is not None:
