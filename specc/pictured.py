@@ -24,7 +24,7 @@ def pictured(made: Run, requirements: Sequence[RequirementResult]) -> tuple[Scen
     world = made.scenario.world
     glow = None
     if made.floor is not None:
-        glow = Glow(made.floor.xs, made.floor.ys, made.floor.lux[-1])
+        glow = Glow(made.floor.xs, made.floor.ys, made.floor.times, made.floor.lux)
     scene = Scene(
         title=made.scenario.name,
         about=made.scenario.about,

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Final, final
 
+import numpy as np
+
 from runtime.arrays import Array, Integers
 from runtime.world.model import Shape
 
@@ -34,11 +36,16 @@ class Lamp:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Glow:
-    """Lux on the floor: xs (nx,), ys (ny,) are the middles of cells, lux (ny, nx)."""
+    """Lux on the floor: xs (nx,), ys (ny,) are the middles of cells; lux (T, ny, nx) at times."""
 
     xs: Array
     ys: Array
+    times: Array
     lux: Array
+
+    def at(self, time: float) -> int:
+        """Which of the times is the last one up to `time`; the first one before all."""
+        return max(int(np.searchsorted(self.times, time + 1e-9, side="right")) - 1, 0)
 
 
 @final

@@ -34,6 +34,7 @@ CORNERS: Final = 40
 """Of a circle that is drawn."""
 MOVED: Final = 5e-3
 """Metres, or a share of a radian: what is less is no move."""
+LAMP: Final = "#f0e442"
 DIM: Final = 0.5
 """The power by which lux become shades: light falls off so fast that a bulb would be a dot."""
 
@@ -202,7 +203,7 @@ def _robots(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
 def _lamps(axes: Axes, scene: Scene, things: Array, palette: Palette) -> list[Entry]:
     """Lights as stars, where they are at the end."""
     drawn: Look = {
-        "marker": "*", "linestyle": "None", "ms": 13.0, "mfc": "#f0e442", "mec": palette.ink,
+        "marker": "*", "linestyle": "None", "ms": 13.0, "mfc": LAMP, "mec": palette.ink,
         "mew": 0.8, "zorder": 8,
     }  # fmt: skip
     for lamp in scene.lamps:
@@ -236,9 +237,9 @@ def light_image(axes: Axes, glow: Glow, palette: Palette) -> AxesImage:
         float(glow.ys[0]) - dy / 2,
         float(glow.ys[-1]) + dy / 2,
     )
-    brightest = max(float(np.quantile(glow.lux, 0.98)), 1e-6)
+    brightest = max(float(np.quantile(glow.lux[-1], 0.98)), 1e-6)
     return axes.imshow(
-        glow.lux,
+        glow.lux[-1],
         extent=extent,
         origin="lower",
         cmap=lux_colors(palette),

@@ -19,7 +19,7 @@ def scene(*, lit: bool = True) -> Scene:
         things=(Item("desk", SQUARE, is_fixed=True), Item("crate", SQUARE)),
         robots=(Item("r", ROUND),),
         lamps=(Lamp("bulb", 3.5, 1.0), Lamp("torch", 0.0, 0.1, on=1)),
-        glow=Glow(xs, ys, lux) if lit else None,
+        glow=Glow(xs, ys, np.array([0.0, 5.0]), np.array([0.5 * lux, lux])) if lit else None,
     )
 
 
