@@ -6,6 +6,7 @@ import numpy as np
 
 from runtime.program import Fidelity, Program, Unit
 from verifier.diagnosis import sentences
+from verifier.diagnosis.between_samples import recorded_between
 from verifier.diagnosis.candidates.inputs import origin_of
 from verifier.diagnosis.candidates.readings import Reading
 from verifier.diagnosis.fitting import intervals_of
@@ -183,6 +184,7 @@ def _candidate(
     kind, said = kind_of(effect, values), sentences.of_candidate(effect, values, numbers)
     left = leaves(bench, tried.fitted)
     evidence = f"{sentences.evidence(tried.share, before)}{sentences.still(left, before)}"
+    recorded = recorded_between(scene, effect, kind, values[0]) if values else ""
     return Candidate(
         kind=kind,
         applies_to=effect.applies_to,
@@ -193,7 +195,7 @@ def _candidate(
         alike=alike,
         origin=effect.origin,
         claim=said,
-        sentence=f"{said}; {evidence}",
+        sentence=f"{said}; {evidence}{recorded}",
         leaves=left,
         slip=slip_of(effect, values) if kind is CandidateKind.UNIT_SLIP else "",
         parameter=effect.parameter,

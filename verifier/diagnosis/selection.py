@@ -11,6 +11,7 @@ import numpy as np
 
 from runtime.arrays import Array
 from verifier.diagnosis.altered import Effect, Number, Values
+from verifier.diagnosis.between_samples import jumps_between_samples
 from verifier.diagnosis.fitting import (
     ENOUGH,
     Fit,
@@ -45,8 +46,7 @@ ROUGH: Final = 0.95
 ALIKE: Final = 0.02
 """and what explains less by no more than this is as good."""
 ALONE: Final = 0.5
-"""No single window holds more than this share of a gain: it may be a jump that came between samples
-or somebody's hand."""
+"""Where inputs jump between samples, no single window holds more than this share of a gain."""
 HINT: Final = 1.5
 """A linear forecast of the gain below this is not followed up."""
 MATTERS: Final = 0.05
@@ -66,7 +66,7 @@ class Tried:
     """One candidate beside those taken before. gain: log-likelihood, its penalty taken off.
 
     share: of the held-out squared error beyond noise that it explains. is_spread: no window alone
-    is most of the gain.
+    is most of the gain, or no input jumps between samples, which could look like that.
     """
 
     effect: Effect
@@ -273,8 +273,14 @@ def _tried(
         gain=float(np.sum(gains) - len(effect.numbers) - np.log(effect.best_of)),
         share=min(float(np.sum(explained) / max(float(np.sum(beyond)), 1e-300)), 1.0),
         matters=_matters(scene, reference, held_out, tolerance, MATTERS),
-        is_spread=float(np.max(gains)) <= ALONE * float(np.sum(gains)),
+        is_spread=_is_spread(gains) or not jumps_between_samples(scene),
     )
+
+
+def _is_spread(gains: Array) -> bool:
+    """Whether no window alone is most of the gain; one that nothing explains is left out."""
+    worst = min(float(np.min(gains)), 0.0)
+    return float(np.max(gains)) <= ALONE * (float(np.sum(gains)) - worst)
 
 
 def _matters(

@@ -68,12 +68,18 @@ def jumps(rng: np.random.Generator, count: int, grid: int) -> Array:
 
 
 def joint(
-    seed: int, *, seconds: float = 40.0, grid: int = EVERY, held: Held = float, late: int = 0
+    seed: int,
+    *,
+    seconds: float = 40.0,
+    grid: int = EVERY,
+    held: Held = float,
+    late: int = 0,
+    damping: float = 4.0,
 ) -> Trace:
     """Sampled at 20 Hz; noise of 3 mrad and 12 mrad/s.
 
     grid: set-points jump at multiples of so many fine steps. late: q is so many fine steps late,
-    and tells its first value until then.
+    and tells its first value until then. damping: 4 in the spec.
     """
     rng = np.random.default_rng(seed)
     count = int(seconds / FINE)
@@ -81,7 +87,7 @@ def joint(
     states = np.zeros((count, 2))
     for i in range(1, count):
         q, w = states[i - 1]
-        rate = 16.0 * (target[i - 1] - q) - 4.0 * w - 2.0 * np.cos(q)
+        rate = 16.0 * (target[i - 1] - q) - damping * w - 2.0 * np.cos(q)
         speed = held(float(w + FINE * rate))
         states[i] = q + FINE * speed, speed
     angle = np.concatenate([np.full(late, states[0, 0]), states[: count - late, 0]])

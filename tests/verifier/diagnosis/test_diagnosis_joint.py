@@ -6,7 +6,7 @@ import pytest
 from runtime.program import Program
 from tests.study.diagnosis import diagnosed
 from tests.verifier.diagnosis.joint import joint, program
-from verifier.report.diagnosis import Candidate, CandidateKind, Diagnosis
+from verifier.report.diagnosis import Candidate, CandidateKind, Diagnosis, Told
 
 
 @pytest.fixture(scope="module")
@@ -60,3 +60,15 @@ def test_a_set_point_that_jumps_between_samples_is_late_by_half_of_one(
     (only,) = taken(found)
     assert (only.kind, only.applies_to) == (CandidateKind.LATE_LOG, ("target",))
     assert only.numbers[0].value == pytest.approx(-0.025, abs=0.01)
+    assert "target is logged every 0.05 s and may jump in between" in only.sentence
+
+
+def test_two_causes_together_are_told_without_the_rivals_of_each_alone(spec: Program) -> None:
+    found = diagnosed(spec, joint(4, seconds=60.0, grid=1, damping=4.4))
+
+    named = {each.applies_to: each for each in taken(found)}
+    assert set(named) == {("target",), ("kd",)}
+    assert named["target",].kind is CandidateKind.LATE_LOG
+    assert found.told is not Told.CANNOT_TELL
+    (damping,) = named["kd",].numbers
+    assert damping.value == pytest.approx(4.4, abs=0.06)
