@@ -9,6 +9,7 @@ from typing import Final, TypeAlias, final
 from runtime.program import Program
 from spec_schema.diagnostics import SpecError
 from specc.verifying import Clock, Verification, program_for_verify, verify_by
+from specc.verifying_recording import attached_architectures, verify_recording
 from verifier.fidelity.together import pooled
 from verifier.report.examination import Examination
 from verifier.report.report import Report, Verdict
@@ -46,7 +47,8 @@ def verify_each(
 ) -> Iterator[Outcome]:
     """Judge recordings one after the other, each like `verify`; a spec is compiled only once.
 
-    One that can't be used does not stop the others.
+    One that can't be used does not stop the others. The recording of a scenario has an outcome
+    for each node of each robot.
 
     Args:
         strict: any loss in a log is an error.
@@ -63,6 +65,12 @@ def verify_each(
     for trace in traces:
         tell = None if progress is None else partial(progress, str(trace))
         try:
+            attached = attached_architectures(Path(trace)) if spec is None else {}
+            if attached:
+                yield from verify_recording(
+                    Path(trace), attached, only_verdict=only_verdict, progress=tell
+                )
+                continue
             yield verify_by(
                 Path(trace),
                 spec,

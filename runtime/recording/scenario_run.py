@@ -99,7 +99,7 @@ def _tell_measures(messages: Messages, run: Run) -> None:
                 world.motions[:, place],
             ]
         )
-        tell_rows(messages, f"/world/{robot.name}", fields, world.times, rows)
+        tell_rows(messages, f"/{robot.name}/base/measured", fields, world.times, rows)
 
 
 def _tell_events(messages: Messages, run: Run) -> None:

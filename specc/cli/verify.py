@@ -46,6 +46,9 @@ def verify(
     With several recordings it prints a table and judges all of one spec together: a FAIL of one
     counts, else the verdict on all, which short recordings may reach that decide nothing alone.
 
+    In the recording of a scenario every behavior and arbiter of every robot is judged by its own
+    spec, a behavior where it had its way: a row for each, and one verdict.
+
     **Examples**
 
     `specc verify run.mcap`
@@ -84,8 +87,8 @@ def verify(
         raise outcomes[0].error
     runs = runs_of(outcomes)
     if outcomes:
-        _print(runs, form, is_one=len(traces) == 1)
-        _write(runs, output, is_one=len(traces) == 1)
+        _print(runs, form, is_one=len(outcomes) == 1)
+        _write(runs, output, is_one=len(outcomes) == 1)
     if is_interrupted:
         say(f"interrupted: {len(outcomes)} of {len(traces)} recordings were judged", "bold red")
         return Status.INTERRUPTED

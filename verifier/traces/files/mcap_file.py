@@ -50,13 +50,13 @@ def read_mcap(path: Path, wanted: Wanted, tell: Progress) -> MessageLog:
         return reading.finished(str(path))
 
 
-def find_attachment(path: Path, suffix: str) -> tuple[str, bytes] | None:
-    """Name and bytes of the last attachment whose name ends in `suffix`; raises OSError.
+def find_attachments(path: Path, suffix: str) -> list[tuple[str, bytes]]:
+    """Names and bytes of attachments whose names end in `suffix`, in order; raises OSError.
 
     Only heads of records are read on the way, no message. One whose checksum is wrong is not
     returned.
     """
-    found = None
+    found = []
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         position = len(MAGIC)
         while position + HEAD.size <= len(data):
@@ -66,7 +66,7 @@ def find_attachment(path: Path, suffix: str) -> tuple[str, bytes] | None:
             if opcode == Opcode.ATTACHMENT and position <= len(data):
                 attachment = _attachment(data[begin:position])
                 if attachment and attachment.name.endswith(suffix):
-                    found = (attachment.name, attachment.data)
+                    found.append((attachment.name, attachment.data))
     return found
 
 

@@ -15,7 +15,7 @@ from verifier.traces.files.bag2_file import is_sqlite, read_bag2
 from verifier.traces.files.csv_file import read_csv
 from verifier.traces.files.csv_layout import is_csv
 from verifier.traces.files.log import LogFile, MessageLog, Messages, Progress, Wanted
-from verifier.traces.files.mcap_file import find_attachment, is_mcap, read_mcap
+from verifier.traces.files.mcap_file import find_attachments, is_mcap, read_mcap
 from verifier.traces.files.packed_file import ELSEWHERE, is_packed, reason, unpack_file
 from verifier.traces.files.ulog_file import is_ulog, read_ulog
 from verifier.traces.trace import Loss
@@ -48,10 +48,19 @@ def attached_program(path: Path) -> tuple[str, bytes] | None:
 
     Reads no message. Raises SpecError V301.
     """
+    found = attached_programs(path)
+    return found[-1] if found else None
+
+
+def attached_programs(path: Path) -> list[tuple[str, bytes]]:
+    """Names and bytes of all compiled specs that an MCAP file carries.
+
+    Reads no message. Raises SpecError V301.
+    """
     try:
         if path.is_dir() or not is_mcap(_head(path)):
-            return None
-        return find_attachment(path, ".specc")
+            return []
+        return find_attachments(path, ".specc")
     except OSError as error:
         raise _unreadable(path, error) from error
 
