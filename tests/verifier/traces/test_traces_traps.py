@@ -28,7 +28,7 @@ INSIDE = 1 << 23
 @pytest.fixture
 def narrow(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small traps are traps already."""
-    monkeypatch.setattr(unpacking, "BELIEVED", 1 << 16)
+    monkeypatch.setattr(unpacking, "BELIEVED_OF_BLOCKS", 1 << 16)
     monkeypatch.setattr(unpacking, "MOST_TIMES", 50)
 
 
@@ -147,7 +147,7 @@ def _zstd_rows(workshop: Any, *, sized: bool) -> Path:
 def test_a_packed_log_that_is_a_trap_is_not_unpacked_any_further(
     workshop: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(packed_file, "BELIEVED", 1 << 21)
+    monkeypatch.setattr(packed_file, "BELIEVED_OF_FILES", 1 << 21)
     monkeypatch.setattr(packed_file, "MOST_TIMES", 50)
     rows = "".join(f"{0.1 * i:.1f},{i}\n" for i in range(50))
     trap = gzip.compress(f"t,x\n{rows}".encode() + b"\n" * INSIDE)

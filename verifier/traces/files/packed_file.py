@@ -14,14 +14,12 @@ import zstandard
 
 from spec_schema.diagnostics import SpecError
 from verifier.traces.faults import file_fault
+from verifier.traces.files.unpacking import MOST_TIMES
 
-LARGEST: Final = 1 << 37
-"""Bytes. What unpacks to more is taken for a trap, ..."""
+LARGEST_FILE: Final = 1 << 37
+"""Bytes. What unpacks to more is taken for a trap, as is what grows `MOST_TIMES`, ..."""
 
-MOST_TIMES: Final = 1000
-"""... and what unpacks to more than so many times its size, ..."""
-
-BELIEVED: Final = 1 << 28
+BELIEVED_OF_FILES: Final = 1 << 28
 """... but not below so many bytes."""
 
 KEPT_FREE: Final = 0.1
@@ -74,7 +72,7 @@ def unpack_file(path: Path, target: Path) -> str:
         magic = next(magic for magic in _OPENERS if head.startswith(magic))
         file.seek(0)
         pieces = _Pieces(_OPENERS[magic](file))
-        most = min(LARGEST, max(BELIEVED, MOST_TIMES * path.stat().st_size))
+        most = min(LARGEST_FILE, max(BELIEVED_OF_FILES, MOST_TIMES * path.stat().st_size))
         room = min(most, _room(target.parent))
         done = 0
         try:

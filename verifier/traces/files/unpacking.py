@@ -8,13 +8,13 @@ from typing import Final, Protocol, TypeAlias, final
 import lz4.frame
 import zstandard
 
-LARGEST: Final = 1 << 29
+LARGEST_BLOCK: Final = 1 << 29
 """Bytes. Blocks that are larger, packed or not, are not read: recorders make them of a few MB."""
 
 MOST_TIMES: Final = 1000
 """What unpacks to more than so many times its size is taken for a trap, ..."""
 
-BELIEVED: Final = 1 << 26
+BELIEVED_OF_BLOCKS: Final = 1 << 26
 """... but not below so many bytes: camera images may be black for hours."""
 
 PIECE = 1 << 14
@@ -38,13 +38,13 @@ class _Decompressor(Protocol):
 
 def most_unpacked(packed: int) -> int:
     """Bytes that `packed` ones may unpack to."""
-    return min(LARGEST, max(BELIEVED, MOST_TIMES * packed))
+    return min(LARGEST_BLOCK, max(BELIEVED_OF_BLOCKS, MOST_TIMES * packed))
 
 
 def check_packed(size: int) -> None:
     """Refuses a block that is too large to be copied out of a file; raises UnpackError."""
-    if size > LARGEST:
-        raise UnpackError(f"it is {size} bytes long, blocks of up to {LARGEST} are read")
+    if size > LARGEST_BLOCK:
+        raise UnpackError(f"it is {size} bytes long, blocks of up to {LARGEST_BLOCK} are read")
 
 
 def unpack(compression: str, data: bytes, size: int) -> bytes:
