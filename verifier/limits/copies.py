@@ -27,7 +27,7 @@ ABOVE: Final = 4
 
 @final
 class Copies:
-    """The copies of one trace. base: the verdict on it as it is."""
+    """The copies of one trace, made when they are asked for. base: the verdict on it as it is."""
 
     def __init__(
         self,
@@ -35,14 +35,18 @@ class Copies:
         trace: Trace,
         study: Study,
         base: Report,
-        planned: tuple[Planned, ...],
         judge: Judge,
     ) -> None:
         self._program, self._trace, self._study, self._judge = program, trace, study, judge
         self._base = {result.name: result for result in base.variables}
         self._planted: dict[Lane, tuple[Plantings, int]] = {}
         self._reports: dict[Lane, Report] = {}
-        self._plant(tuple(lane for each in planned for lane in _around(each)))
+
+    def plant(self, lanes: tuple[Lane, ...]) -> None:
+        """Integrate the robots of some lanes, all at once."""
+        wanted = tuple(dict.fromkeys(lanes))
+        plantings = plant(self._study, wanted)
+        self._planted |= {lane: (plantings, place) for place, lane in enumerate(wanted)}
 
     def is_caught(self, planned: Planned, rung: int) -> bool:
         """Whether a fault of this size FAILs, planted in either direction."""
@@ -79,18 +83,13 @@ class Copies:
         """The verdict on one copy."""
         if lane not in self._reports:
             if lane not in self._planted:
-                self._plant(_beside(lane))
+                self.plant(_beside(lane))
             plantings, place = self._planted[lane]
             rng = np.random.default_rng([SEED, place])
             self._reports[lane] = self._judge(
                 self._program, copy_of(self._trace, plantings, place, rng)
             )
         return self._reports[lane]
-
-    def _plant(self, lanes: tuple[Lane, ...]) -> None:
-        wanted = tuple(dict.fromkeys(lanes))
-        plantings = plant(self._study, wanted)
-        self._planted |= {lane: (plantings, place) for place, lane in enumerate(wanted)}
 
     def _weaker_first(self, planned: Planned, rung: int) -> tuple[Lane, ...]:
         """Both directions, first that in which less was shown of the sizes tried so far."""
@@ -119,6 +118,20 @@ class Copies:
         effect = float(np.sqrt(max(result.declared.departure**2 - unrest**2, 0.0)))
         behind = max(effect - result.systematic, 0.0)
         return (result.tolerance + behind) / effect if effect > 0.0 else np.inf
+
+
+def copies_of(
+    program: Program,
+    trace: Trace,
+    study: Study,
+    base: Report,
+    planned: tuple[Planned, ...],
+    judge: Judge,
+) -> Copies:
+    """The copies of one trace; those around the guesses of all faults are planted at once."""
+    copies = Copies(program, trace, study, base, judge)
+    copies.plant(tuple(lane for each in planned for lane in _around(each)))
+    return copies
 
 
 def exceeded(report: Report) -> list[str]:

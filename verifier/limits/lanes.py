@@ -36,6 +36,8 @@ NUDGE: Final = 1e-6
 SETTLED: Final = 1e-7
 """The last round changes deviations by no more than this share of the largest; those of a step map
 not at all, which takes no more rounds than there are steps."""
+ROUNDING: Final = 1e-13
+"""Of the largest state; what rounds of late inputs that have not changed yet leave."""
 
 
 @final
@@ -127,6 +129,7 @@ def _block(
     controls, plain = knots.controls[part], real[part][:, None]
     path = np.tile(start, (len(places) + 1, 1, 1))
     settled = 0.0 if knots.is_map else SETTLED
+    least = 0.0 if knots.is_map else ROUNDING * np.max(np.abs(places), initial=0.0)
     rounds, is_settled = 0, False
     while rounds < ROUNDS and not is_settled:
         rounds += 1
@@ -134,7 +137,8 @@ def _block(
         moved = robots.moved(_displaced(robots, places, at), controls, part)
         found = np.concatenate([start[None], start + np.cumsum(steps * (moved - plain), axis=0)])
         change = np.max(np.abs(found - path), initial=0.0)
-        path, is_settled = found, not change > settled * np.max(np.abs(found), initial=0.0)
+        path = found
+        is_settled = not change > max(settled * np.max(np.abs(found), initial=0.0), least)
     return path, rounds, is_settled
 
 

@@ -11,7 +11,7 @@ from runtime.program import Program
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.stretches.needs import Needs, needs_of
 from verifier.fidelity.verify import judged, verify
-from verifier.limits.copies import Copies, Judge, exceeded
+from verifier.limits.copies import Copies, Judge, copies_of, exceeded
 from verifier.limits.excerpt import excerpt_of
 from verifier.limits.faults import Planned, faults_of
 from verifier.limits.saying import said
@@ -76,7 +76,7 @@ def _searched(
     judge: Judge,
 ) -> tuple[Caught, ...]:
     acting = tuple(each for each in planned if each.can_act)
-    copies = Copies(program, trace, study, base, acting, judge)
+    copies = copies_of(program, trace, study, base, acting, judge)
     return tuple(
         _caught(program, each, copies) if each.can_act else said(each, (None, None), (), ())
         for each in planned
