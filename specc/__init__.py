@@ -25,12 +25,15 @@ if TYPE_CHECKING:
     from specc.portraying import portrait as portrait
     from specc.portraying import sweep as sweep
     from specc.recorded import record as record
+    from specc.recorded import record_run as record_run
     from specc.reported import write_report as write_report
     from specc.reported import write_reports as write_reports
     from specc.running import simulate as simulate
     from specc.runs import Runs as Runs
     from specc.runs import verify_each as verify_each
     from specc.runs import verify_together as verify_together
+    from specc.simulating import Simulation as Simulation
+    from specc.simulating import simulate_scenario as simulate_scenario
     from specc.verifying import Verification as Verification
     from specc.verifying import verify as verify
     from verifier.report.report import Report as Report
@@ -59,6 +62,9 @@ HOMES = {
     "portrait": "specc.portraying",
     "sweep": "specc.portraying",
     "simulate": "specc.running",
+    "Simulation": "specc.simulating",
+    "simulate_scenario": "specc.simulating",
+    "record_run": "specc.recorded",
     "verify": "specc.verifying",
     "fit": "specc.fitting.fit",
     "Fitted": "specc.fitting.fitted",

@@ -1,0 +1,137 @@
+"""A run of a scenario: looking changes nothing, and everything has its name, unit and rate."""
+
+import dataclasses
+import hashlib
+import itertools
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+from compiler.world.quantities_of_run import quantities_of
+from runtime.recording.scenario_run import recorded_run
+from runtime.run import LOOK, run
+from runtime.world.layout import NoRoomError
+from tests.runtime.first_light import FILE, first_light, short_run
+from verifier.architectures.gathering import Gathered
+
+SCRIPT = """
+import hashlib
+from tests.runtime.first_light import first_light
+from runtime.recording.scenario_run import recorded_run
+from runtime.run import run
+made = run(first_light(2.0), light_every=1.0)
+print(made.digest.hex(), hashlib.sha256(recorded_run(made)).hexdigest())
+"""
+
+
+def test_who_watches_and_what_is_recorded_changes_nothing() -> None:
+    scenario = first_light()
+    watched = Gathered(scenario.robots[0].architecture, 0, scenario.step)
+
+    plain = run(scenario)
+    seen = run(scenario, observer=watched, light_every=0.1)
+
+    assert plain.digest == seen.digest == short_run().digest
+    assert watched.records()[0].times.size
+
+
+def test_another_seed_gives_another_run_and_the_same_one_the_same() -> None:
+    one, other = run(first_light(1.0, seed=1)), run(first_light(1.0, seed=2))
+
+    assert one.digest != other.digest
+    assert one.digest == run(first_light(1.0, seed=1)).digest
+
+
+def test_all_that_requirements_may_speak_of_is_there() -> None:
+    made = short_run()
+    known = quantities_of(made.scenario.world, made.scenario.robots)
+
+    assert made.signals.keys() == known.keys()
+    assert all(quantity.times.size for quantity in made.signals.values())
+    for quantity in made.signals.values():
+        assert (np.diff(quantity.times) > 0.0).all(), quantity.name
+        assert quantity.times.shape == quantity.values.shape
+
+
+def test_each_quantity_has_its_own_rate() -> None:
+    made = short_run()
+    scenario = made.scenario
+    robot = scenario.robots[0]
+
+    sensor = next(s for s in robot.body.sensors if s.name == "ahead")
+    assert np.allclose(np.diff(made.signals["r.ahead.range"].times), sensor.every)
+    assert np.allclose(np.diff(made.signals["r.clearance"].times), scenario.step)
+    assert np.diff(made.signals["r.x"].times).max() <= LOOK + 1e-9
+    assert made.signals["r.x"].times[-1] == pytest.approx(scenario.duration)
+
+
+def test_what_a_node_tells_stands_at_the_time_at_which_it_takes_effect() -> None:
+    made = short_run()
+    nodes = made.scenario.robots[0].architecture.nodes
+    place = next(i for i, node in enumerate(nodes) if node.name == "seek")
+    node, ticks = nodes[place], made.robots[0].nodes[place]
+
+    turn = made.signals["r.seek.turn"]
+
+    assert np.array_equal(turn.times, ticks.times + node.response_time)
+    assert np.array_equal(turn.values, ticks.outputs[:, 0])
+    assert np.array_equal(made.signals["r.seek.bearing"].times, ticks.times)
+
+
+def test_poses_end_where_speed_and_turn_lead() -> None:
+    # An independent way: the recorded motion, integrated by the midpoint of each look.
+    made = short_run()
+    x, heading = made.signals["r.x"], made.world.poses[:, -1, 2]
+    speed = made.signals["r.speed"].values
+
+    ahead = 0.5 * (speed[1:] + speed[:-1])
+    middle = 0.5 * (heading[1:] + heading[:-1])
+    path = x.values[0] + np.cumsum(ahead * np.cos(middle) * np.diff(x.times))
+
+    assert np.abs(path - x.values[1:]).max() < 2e-3
+
+
+def test_progress_reaches_the_end() -> None:
+    told: list[tuple[int, int]] = []
+
+    run(first_light(1.0), progress=lambda done, of: told.append((done, of)))
+
+    assert told[-1][0] == told[-1][1] > 0
+    assert all(one[0] < other[0] for one, other in itertools.pairwise(told))
+
+
+def test_a_world_without_room_says_so() -> None:
+    scenario = first_light()
+    crowded = dataclasses.replace(scenario.world.scattered[0], count=400)
+    world = dataclasses.replace(scenario.world, scattered=(crowded,))
+
+    with pytest.raises(NoRoomError, match="no room for 'clutter_"):
+        run(dataclasses.replace(scenario, world=world))
+
+
+def test_the_same_run_gives_the_same_bytes_in_fresh_processes_and_under_load() -> None:
+    stop = threading.Event()
+    burner = threading.Thread(target=_burn, args=(stop,))
+    burner.start()
+    fresh = [
+        subprocess.Popen(
+            [sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True, cwd=FILE.parents[2]
+        )
+        for _ in range(2)
+    ]
+    told = [process.communicate()[0].split() for process in fresh]
+    stop.set()
+    burner.join()
+
+    here = run(first_light(2.0), light_every=1.0)
+    data = hashlib.sha256(recorded_run(here)).hexdigest()
+
+    assert told == [[here.digest.hex(), data]] * 2
+
+
+def _burn(stop: threading.Event) -> None:
+    while not stop.is_set():
+        np.linalg.eigvals(np.ones((200, 200)))
