@@ -26,6 +26,8 @@ from runtime.world.world import Inhabitant, SimulatedWorld
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Is told how many steps of how many are done."""
+Seen: TypeAlias = Callable[[float, Array], None]
+"""Is told where all are while it runs: seconds, and poses (n, 3) of things, then robots."""
 
 LOOK: Final = 0.02
 """Seconds between two looks at where all are, at most; how near robots come is seen each step."""
@@ -66,6 +68,7 @@ def run(
     observer: Observer | None = None,
     progress: Progress | None = None,
     light_every: float | None = None,
+    seen: Seen | None = None,
 ) -> Run:
     """Run a scenario to its end.
 
@@ -76,6 +79,7 @@ def run(
         observer: is told everything as it happens.
         progress: is told a few hundred times how far it is.
         light_every: seconds between two pictures of the light on the floor; None for none.
+        seen: is told where all are, each time that the run looks.
 
     Raises:
         NoRoomError: there is no room for what is placed at random.
@@ -92,7 +96,7 @@ def run(
         observer=gathering,
         learners=learners,
     )
-    watch = _Watch(scenario, world, senses, light_every)
+    watch = _Watch(scenario, world, senses, light_every, seen)
     steps = max(round(scenario.duration / scenario.step), 1)
     every = max(steps // TOLD, 1)
     for done in range(steps):
@@ -103,15 +107,15 @@ def run(
     watch.look(last=True)
     if progress is not None:
         progress(steps, steps)
-    tracks, seen = gathering.tracks(), watch.track()
+    tracks, looked = gathering.tracks(), watch.track()
     return Run(
         scenario=scenario,
         duration=steps * scenario.step,
         layout=world.layout,
         robots=tracks,
-        world=seen,
+        world=looked,
         floor=watch.floor(),
-        signals=quantities_of(scenario.robots, tracks, seen),
+        signals=quantities_of(scenario.robots, tracks, looked),
         events=gathering.happenings(),
         audit=world.audit(),
         digest=scheduler.state_hash(),
@@ -146,8 +150,14 @@ class _Watch:
     """Looks at the world between steps, and changes nothing in it."""
 
     def __init__(
-        self, scenario: Scenario, world: SimulatedWorld, senses: Senses, light_every: float | None
+        self,
+        scenario: Scenario,
+        world: SimulatedWorld,
+        senses: Senses,
+        light_every: float | None,
+        seen: Seen | None,
     ) -> None:
+        self._seen = seen
         self._world, self._senses, self._step = world, senses, scenario.step
         self._robots = range(len(scenario.robots))
         things = (thing.name for thing in world.layout.things)
@@ -175,6 +185,8 @@ class _Watch:
         if last or steps % self._every == 0:
             self._at.append(steps)
             self._poses.append(world.poses())
+            if self._seen is not None:
+                self._seen(world.time, self._poses[-1])
             motions = [world.motion(robot) for robot in self._robots]
             self._motions.append([(motion.forward, motion.turn) for motion in motions])
             self._light.append([self._senses.light(robot) for robot in self._robots])

@@ -9,6 +9,8 @@ from runtime.architecture import Architecture, Way
 from runtime.arrays import Array, Booleans, Integers
 from runtime.recording.tracks import ActingTrack
 from runtime.run import Run
+from runtime.scenario import Scenario
+from runtime.world.model import Thing
 from specc.figures.quantities import quantity, seconds
 from specc.figures.scene import NOBODY, Glow, Item, Lamp, Mark, Outcome, Scene, Trails
 from verifier.report.requirement_results import Outcome as Judged
@@ -19,25 +21,27 @@ HELD: Final = {Judged.SATISFIED: True, Judged.VIOLATED: False, Judged.OPEN: None
 
 def pictured(made: Run, requirements: Sequence[RequirementResult]) -> tuple[Scene, Trails]:
     """What posters and animations show of a run; the light where the run kept it."""
-    things = made.layout.things
-    names = [thing.name for thing in things]
-    world = made.scenario.world
     glow = None
     if made.floor is not None:
         glow = Glow(made.floor.xs, made.floor.ys, made.floor.times, made.floor.lux)
-    scene = Scene(
-        title=made.scenario.name,
-        about=made.scenario.about,
-        arena=np.array(world.arena),
+    return scene_of(made.scenario, made.layout.things, glow), _trails(made, requirements)
+
+
+def scene_of(scenario: Scenario, things: Sequence[Thing], glow: Glow | None = None) -> Scene:
+    """What stands in a scenario; things: all of them, with those that were laid at random."""
+    names = [thing.name for thing in things]
+    return Scene(
+        title=scenario.name,
+        about=scenario.about,
+        arena=np.array(scenario.world.arena),
         things=tuple(Item(thing.name, thing.shape, thing.is_fixed) for thing in things),
-        robots=tuple(Item(robot.name, robot.body.shape) for robot in made.scenario.robots),
+        robots=tuple(Item(robot.name, robot.body.shape) for robot in scenario.robots),
         lamps=tuple(
             Lamp(lamp.name, lamp.pose.x, lamp.pose.y, names.index(lamp.on) if lamp.on else NOBODY)
-            for lamp in world.lights
+            for lamp in scenario.world.lights
         ),
         glow=glow,
     )
-    return scene, _trails(made, requirements)
 
 
 def _trails(made: Run, requirements: Sequence[RequirementResult]) -> Trails:
@@ -68,35 +72,33 @@ def _trails(made: Run, requirements: Sequence[RequirementResult]) -> Trails:
 def who_acts(
     architecture: Architecture, track: ActingTrack, times: Array
 ) -> tuple[tuple[str, ...], Integers]:
-    """Who has its way on the first channel that is reached: names, and for each time an index.
+    """Who has its way: names, and for each time an index of them, or NOBODY."""
+    acting = np.full(len(times), NOBODY, dtype=np.int64)
+    if not len(track.times):
+        return (), acting
+    rows = np.searchsorted(track.times, times + 1e-9, side="right") - 1
+    told = [winner(architecture, acts) for acts in track.acts]
+    names = [name for name in dict.fromkeys(told) if name]
+    places = np.array([names.index(name) if name else NOBODY for name in told], dtype=np.int64)
+    seen = rows >= 0
+    acting[seen] = places[rows[seen]]
+    return tuple(names), acting
+
+
+def winner(architecture: Architecture, acts: Booleans) -> str:
+    """Who has its way on the first channel that is reached, empty for nobody.
 
     Of a priority it is the highest that acts; where several are added or mixed it is all of them.
     """
     channel = next((c for c in architecture.channels if c.resolution.nodes), None)
-    acting = np.full(len(times), NOBODY, dtype=np.int64)
-    if channel is None or not len(track.times):
-        return (), acting
-    resolution = channel.resolution
-    rows = np.searchsorted(track.times, times + 1e-9, side="right") - 1
-    names: list[str] = []
-    known: dict[tuple[int, ...], int] = {}
-    places: list[int] = []
-    for acts in track.acts:
-        who = _winners(resolution.nodes, acts, alone=resolution.way is Way.PRIORITY)
-        replaced = {part for node in who for part in architecture.nodes[node].replaces}
-        who = tuple(node for node in who if node not in replaced)
-        if who and who not in known:
-            known[who] = len(names)
-            names.append(" + ".join(architecture.nodes[node].name for node in who))
-        places.append(known.get(who, NOBODY))
-    seen = rows >= 0
-    acting[seen] = np.array(places, dtype=np.int64)[rows[seen]]
-    return tuple(names), acting
-
-
-def _winners(nodes: tuple[int, ...], acts: Booleans, *, alone: bool) -> tuple[int, ...]:
-    who = tuple(node for node in nodes if acts[node])
-    return who[:1] if alone else who
+    if channel is None:
+        return ""
+    who = [node for node in channel.resolution.nodes if acts[node]]
+    replaced = {part for node in who for part in architecture.nodes[node].replaces}
+    who = [node for node in who if node not in replaced]
+    if channel.resolution.way is Way.PRIORITY:
+        who = who[:1]
+    return " + ".join(architecture.nodes[node].name for node in who)
 
 
 def _contacts(made: Run, poses: Array) -> list[Mark]:

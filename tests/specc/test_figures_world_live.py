@@ -1,0 +1,148 @@
+"""The view in the terminal: it fits, tells who acts, keeps time, and cleans up."""
+
+import re
+from io import StringIO
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from runtime.arrays import Array, Integers
+from specc.figures.braille import Canvas
+from specc.figures.live import View, live_view, watch
+from tests.specc.world_scenes import scene, trails
+
+BOX = (0.0, 0.0, 4.0, 2.0)
+SHOW_CURSOR = "\x1b[?25h"
+
+
+def terminal(width: int = 80, height: int = 24) -> tuple[Console, StringIO]:
+    out = StringIO()
+    return Console(file=out, width=width, height=height, force_terminal=True), out
+
+
+class Clock:
+    """A clock that goes on only by sleeping."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+
+
+def test_a_dot_is_where_braille_has_it() -> None:
+    canvas = Canvas(2, 1, (0.0, 0.0, 3.0, 3.0), ascii_only=False)
+
+    canvas.dots(np.array([[0.0, 3.0], [1.0, 0.0], [2.0, 2.0]]))
+
+    assert canvas.text().plain == "⢁⠂"  # dots 1 and 8; dot 2
+
+
+def test_what_is_outside_is_not_drawn() -> None:
+    canvas = Canvas(10, 5, BOX, ascii_only=False)
+
+    canvas.dots(np.array([[-1.0, 1.0], [9.0, 1.0], [1.0, -9.0], [1.0, 9.0]]))
+    canvas.letter(9.0, 9.0, "x")
+
+    assert canvas.text().plain.strip() == ""
+
+
+@pytest.mark.parametrize("size", [(80, 24), (44, 8), (30, 6), (200, 60)])
+def test_it_fits_the_terminal(size: tuple[int, int]) -> None:
+    console, out = terminal(*size)
+    run = trails()
+    moment = View(scene(), run.doers, console).at(1.0, run.things[9], run.robots[9], run.acting[9])
+    plain = Console(file=out, width=size[0], height=size[1], color_system=None)
+
+    plain.print(moment)
+
+    lines = out.getvalue().splitlines()
+    assert len(lines) <= size[1]
+    assert max(map(len, lines)) <= size[0]
+
+
+def test_it_tells_the_time_and_who_acts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    console, out = terminal()
+
+    assert watch(scene(), trails(), console, speed=None)
+
+    last = out.getvalue()
+    assert "12.0 s" in last
+    assert "avoid" in last
+    assert not re.search(r"\x1b\[[0-9;]*[349][0-7]m", last)  # no colour
+
+
+def test_a_replay_takes_as_long_as_its_run() -> None:
+    console, _ = terminal()
+    clock = Clock()
+
+    watch(scene(), trails(12.0), console, speed=2.0, clock=clock, sleep=clock.sleep)
+
+    assert clock.now == pytest.approx(106.0, abs=1e-6)
+
+
+def test_ctrl_c_ends_it_and_gives_the_cursor_back() -> None:
+    console, out = terminal()
+
+    def interrupt(_seconds: float) -> None:
+        raise KeyboardInterrupt
+
+    assert not watch(scene(), trails(), console, clock=Clock(), sleep=interrupt)
+    assert out.getvalue().endswith(SHOW_CURSOR)
+
+
+def test_an_exception_passes_and_gives_the_cursor_back() -> None:
+    console, out = terminal()
+    run = trails()
+
+    def fail() -> None:
+        with live_view(scene(), run.doers, console, speed=None) as show:
+            show(0.0, run.things[0], run.robots[0], run.acting[0])
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert out.getvalue().endswith(SHOW_CURSOR)
+
+
+def test_a_terminal_without_braille_gets_plain_letters() -> None:
+    class Latin(StringIO):
+        encoding = "latin-1"
+
+    out = Latin()
+    console = Console(file=out, width=80, height=24, force_terminal=True)
+
+    watch(scene(), trails(), console, speed=None)
+
+    out.getvalue().encode("latin-1")
+
+
+def test_where_nobody_looks_only_the_end_is_printed() -> None:
+    out = StringIO()
+
+    watch(scene(), trails(), Console(file=out, width=80, height=24), speed=None)
+
+    assert out.getvalue().count("drive") == 1
+
+
+def moments(run_time: float) -> tuple[float, Array, Array, Integers]:
+    run = trails()
+    row = int(np.searchsorted(run.times, run_time))
+    return run_time, run.things[row], run.robots[row], run.acting[row]
+
+
+def test_moments_that_come_too_fast_are_skipped_but_not_the_last() -> None:
+    console, out = terminal()
+    clock = Clock()
+
+    with live_view(scene(), trails().doers, console, speed=None, clock=clock) as show:
+        for tenth in range(100):
+            show(*moments(tenth / 10.0))
+
+    assert out.getvalue().count("drive") <= 3  # the first, the last, and rich's at the end
+    assert "9.9 s" in out.getvalue()
