@@ -1,8 +1,8 @@
 """The Foxglove schemas that runs are drawn with, as protobuf.
 
 The names, numbers and types of fields are those of
-https://github.com/foxglove/foxglove-sdk/tree/main/schemas/proto (MIT). They stand here since the
-generated modules on PyPI are bound to one major version of protobuf; ADR 25.
+https://github.com/foxglove/foxglove-sdk/tree/main/schemas/proto (MIT). Why they
+stand here: ADR 25.
 """
 
 from functools import cache
