@@ -15,11 +15,12 @@ ROOT: Final = DOCS.parent
 @final
 @dataclass(frozen=True, slots=True)
 class Plate:
-    """One picture: its file, what `specc portrait` is told, and what is to be seen."""
+    """One picture: its file, what `specc` is told, and what is to be seen."""
 
     name: str
     told: str
     caption: str
+    command: str = "portrait"
 
 
 PLATES: Final = (
@@ -50,16 +51,21 @@ PLATES: Final = (
     Plate("lorenz", "docs/gallery/lorenz.yaml --axes x,y,z",
           "Three variables: the unstable manifold of the origin draws the attractor."),
     Plate("keep_left", "specs/keep_left.yaml", "One variable: a phase line."),
+    Plate("thesis_3_2", "specs/architectures/thesis_3_2.yaml",
+          "Three base behaviors in parallel and their control interfaces (figure 3.2 of the "
+          "thesis); all three reach both channels, which is resolved by priority.", "wiring"),
+    Plate("thesis_3_3", "specs/architectures/thesis_3_3.yaml",
+          "A control architecture with two levels of control modules (figure 3.3).", "wiring"),
 )  # fmt: skip
 
 
 def draw(plate: Plate) -> str:
     """Draws one plate; gives its lines in the gallery."""
     picture = DOCS / "img" / f"{plate.name}.svg"
-    status = main(["portrait", *shlex.split(plate.told), "-o", str(picture)])
+    status = main([plate.command, *shlex.split(plate.told), "-o", str(picture)])
     assert status == 0, plate.told
     shown = f"![{plate.name}](img/{picture.name})"
-    return f"{plate.caption}\n\n`specc portrait {plate.told}`\n\n{shown}\n"
+    return f"{plate.caption}\n\n`specc {plate.command} {plate.told}`\n\n{shown}\n"
 
 
 def draw_all() -> None:

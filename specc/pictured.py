@@ -1,6 +1,7 @@
 """A run as pictures draw it: the scene, everybody's trail, and what was required."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -11,8 +12,12 @@ from runtime.recording.tracks import ActingTrack
 from runtime.run import Run
 from runtime.scenario import Scenario
 from runtime.world.model import Thing
+from specc.drawn import write_picture
+from specc.figures.animation import Progress, animate
 from specc.figures.quantities import quantity, seconds
 from specc.figures.scene import NOBODY, Glow, Item, Lamp, Mark, Outcome, Scene, Trails
+from specc.figures.style_names import Style
+from specc.figures.world import draw_world
 from verifier.report.requirement_results import Outcome as Judged
 from verifier.report.requirement_results import RequirementResult
 
@@ -125,3 +130,26 @@ def _margin(one: RequirementResult) -> str:
         return ""
     margin = f"robustness {quantity(one.robustness, one.unit)}"
     return f"{margin} at {seconds(one.witness.time)}" if one.witness else margin
+
+
+def write_poster(
+    made: Run, requirements: Sequence[RequirementResult], path: Path, style: Style = Style.SCREEN
+) -> None:
+    """Write the poster of a run as .svg, .png or .pdf; the light where the run kept it.
+
+    Raises:
+        SpecError: another suffix, or a file that can't be written.
+    """
+    write_picture(draw_world(*pictured(made, requirements), style), path, style)
+
+
+def write_film(
+    made: Run, path: Path, progress: Progress | None = None, style: Style = Style.SCREEN
+) -> None:
+    """Write a run as .gif or .mp4; the light as often as the run kept it.
+
+    Raises:
+        SpecError: another suffix, .mp4 without ffmpeg, or a file that can't be written.
+    """
+    scene, trails = pictured(made, ())
+    animate(scene, trails, path, progress, style=style)
