@@ -87,8 +87,9 @@ def verify(
         raise outcomes[0].error
     runs = runs_of(outcomes)
     if outcomes:
-        _print(runs, form, is_one=len(outcomes) == 1)
-        _write(runs, output, is_one=len(outcomes) == 1)
+        is_one = len(traces) == len(outcomes) == 1
+        _print(runs, form, is_one=is_one)
+        _write(runs, output, is_one=is_one)
     if is_interrupted:
         say(f"interrupted: {len(outcomes)} of {len(traces)} recordings were judged", "bold red")
         return Status.INTERRUPTED
