@@ -24,6 +24,7 @@ from specc.figures.wiring_plan import (
     Trunk,
     box_height,
     box_width,
+    claim_slot,
     mouth_width,
     slot,
 )
@@ -56,7 +57,7 @@ def plan_of(wired: Wired) -> Plan:
     at = left + 0.5 * (inner - mouths_width)
     for mouth in wired.mouths:
         spots[f"/{mouth.name}"] = (at, mouth_width(mouth))
-        names = [(port.name, slot(port)) for port in mouth.claims]
+        names = [(port.name, claim_slot(port)) for port in mouth.claims]
         xs |= _ports(mouth.name, "above", names, at, mouth_width(mouth), 0)
         at += mouth_width(mouth) + BETWEEN
     ends = _ends(wired, xs)

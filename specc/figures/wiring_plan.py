@@ -80,6 +80,11 @@ def slot(port: Port) -> float:
     return CHARACTER * max(len(port.name), 0.85 * len(port.note), 2) + 0.16
 
 
+def claim_slot(port: Port) -> float:
+    """The width that a port of a channel needs: its rank and name stand beside one another."""
+    return slot(Port(f"{port.note} {port.name}".strip()))
+
+
 def box_width(box: Box) -> float:
     """Of a node's box."""
     head = max(0.085 * len(box.name), *(CHARACTER * len(t) for t in (box.what, box.clock)))
@@ -92,7 +97,7 @@ def box_width(box: Box) -> float:
 def mouth_width(mouth: Mouth) -> float:
     """Of a channel's box."""
     texts = (mouth.name, f"◆ 9 reach it: {mouth.what}", f"at rest: {mouth.rest}")
-    named = sum(slot(port) for port in mouth.claims)
+    named = sum(claim_slot(port) for port in mouth.claims)
     return max(named + 0.1, *(CHARACTER * 1.15 * len(text) + 0.3 for text in texts))
 
 
