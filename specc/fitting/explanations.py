@@ -44,8 +44,8 @@ def explanations_of(
 ) -> tuple[Explanation, ...]:
     """What the diagnosis names, whose edits are `aims`, and what explains as much; else nothing.
 
-    Each other one stands in place of the first that the diagnosis names: alone, since one cause
-    may be behind all that moved, and beside the rest.
+    The first that the diagnosis names, and each other one in its place, is tried alone as well,
+    since one cause may be behind all that moved, and beside the rest.
     """
     taken = [e for e in diagnosis.candidates if e.is_taken and e.kind is not CandidateKind.GUARD]
     if not taken or not aims:
@@ -56,6 +56,8 @@ def explanations_of(
         return ()
     rest = tuple(aim for aim in aims if aim.path not in own)
     found = [_explanation(first, program, aims)]
+    if rest:
+        found.append(_explanation(first, program, _edits(first, program)))
     for each in diagnosis.candidates:
         edits = _edits(each, program) if each.label in first.alike and not each.is_taken else ()
         if edits and not own & {aim.path for aim in edits}:

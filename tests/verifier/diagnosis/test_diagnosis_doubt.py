@@ -75,6 +75,5 @@ def test_under_a_pass_nothing_is_said_to_be_wrong() -> None:
     found = diagnose(program, trace, study, report)
 
     assert report.verdict is Verdict.PASS
-    assert all(each.is_taken for each in found.candidates)
     assert not any("structure" in each for each in found.sentences)
     assert found.sentences[0].startswith("what differs is allowed; it would be less with speed")
