@@ -62,8 +62,8 @@ def as_good(found: Sequence[Weighed]) -> tuple[Weighed, ...]:
     """The best, and what is no worse; values that the spec declares for the log come last.
 
     Of those that leave nothing, passing ones with the fewest edits: one cause that explains three
-    shifts is better than three. Among these, held-out windows decide; and numbers that stand in
-    the spec go before what would be written anew, which says the same in other words.
+    shifts is better than three. Among these, held-out windows decide; and the behavior's own
+    numbers go before those of the log, which say the same in other words.
     """
     whole = [each for each in found if not each.left]
     if not whole:
@@ -72,7 +72,7 @@ def as_good(found: Sequence[Weighed]) -> tuple[Weighed, ...]:
     few = [each for each in whole if _cost(each) == best]
     top = max(each.explanation.gain for each in few)
     near = [each for each in few if each.explanation.gain > top - CLOSE]
-    own = [each for each in near if all(move.old for move in each.moves)]
+    own = [each for each in near if all(aim.path[0] != "trace" for aim in each.explanation.aims)]
     return tuple(sorted(own or near, key=lambda each: each.explanation.is_declared))
 
 
@@ -93,8 +93,8 @@ def _why_not(other: Weighed, best: Weighed) -> str:
     if len(other.moves) > len(best.moves):
         names = listed([move.name for move in other.moves])
         return f"it takes {len(other.moves)} edits ({names}) for what this explains with fewer"
-    if not all(move.old for move in other.moves):
-        return "it says the same by an entry that the spec does not have"
+    if any(aim.path[0] == "trace" for aim in other.explanation.aims):
+        return "it says the same by a number of the log; the behavior's own go first"
     return "it predicts windows that it was not fitted to less well"
 
 

@@ -49,9 +49,9 @@ def errors(program: Program, count: int) -> np.ndarray:
 def test_every_spec_of_the_library_compiles_within_its_bounds(path: Path) -> None:
     program = compile_file(path, lambda _what, _done, _of: None).program
 
-    assert program.field.bounds
+    assert program.field.bounds or "keep: code" in path.read_text(encoding="utf-8")
     assert all(bound.measured <= bound.tolerance for bound in program.field.bounds)
-    if program.field.formula is not None:
+    if program.field.bounds and program.field.formula is not None:
         bounds = [bound.measured for bound in program.field.bounds]
         assert np.all(errors(program, 50_000) <= bounds)
 
