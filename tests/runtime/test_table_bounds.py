@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from runtime.arrays import Array
@@ -77,6 +77,7 @@ def exact_value(table: Table, point: Array, column: int) -> Fraction:
 @given(
     seed=st.integers(0, 10**6), d=st.integers(1, 3), size=st.sampled_from([0.0, 1e-15, 1e-9, 0.3])
 )
+@example(seed=2646, d=1, size=0.3)  # it ends 1.1 cells beyond the table, of which nothing is said
 @settings(max_examples=40, deadline=None)
 def test_the_exact_value_lies_in_the_bounds_of_every_box_around_it(
     method: Method, seed: int, d: int, size: float
@@ -91,10 +92,11 @@ def test_the_exact_value_lies_in_the_bounds_of_every_box_around_it(
     jets = column_jets(columns_of(table), box_jets(corner[None], high[None]), 1, coarse=False)
 
     for column, jet in enumerate(jets):
+        ends = float(jet.value.low[0]), float(jet.value.high[0])
+        assert np.all(np.isfinite(ends)) == np.all(jet.sure)
         for point in (corner, np.minimum(high, [axis.high for axis in table.axes])):
             value = exact_value(table, np.maximum(point, corner), column)
-            assert Fraction(float(jet.value.low[0])) <= value
-            assert value <= Fraction(float(jet.value.high[0]))
+            assert ends[0] <= value <= ends[1]
 
 
 @pytest.mark.parametrize("coarse", [False, True])
