@@ -200,19 +200,29 @@ class _Case:
 
     def witness(self, found: Found) -> Witness:
         """The state, in words."""
-        decisions = []
-        for place, outcome in sorted(self._decided(found)):
-            sampled = self.sampled(place)
-            assert sampled is not None, "what is decided was sampled"
-            values = {
-                entry.name: found.values[sampled.name_of(i)]
-                for i, entry in enumerate(sampled.decider.entries)
-                if sampled.name_of(i) in found.values
-            }
-            decisions.append(Decision(place, outcome, sampled.stamp, values))
+        decisions = [
+            *(self._decision(outcome, found) for outcome in sorted(self._decided(found))),
+            *(self._decision(outcome, found, is_denied=True) for outcome in self._denied(found)),
+        ]
         ticks = [(one.sampled, one.decider, one.values) for one in decisions]
         run = moments(self.question, self.timing, ticks)
         return told(self.question, self.timing, self.instant.at, decisions, run)
+
+    def _decision(self, outcome: Outcome, found: Found, *, is_denied: bool = False) -> Decision:
+        sampled = self.sampled(outcome[0])
+        assert sampled is not None, "what is decided was sampled"
+        values = {
+            entry.name: found.values[sampled.name_of(i)]
+            for i, entry in enumerate(sampled.decider.entries)
+            if sampled.name_of(i) in found.values
+        }
+        return Decision(*outcome, sampled.stamp, values, is_denied=is_denied)
+
+    def _denied(self, found: Found) -> Iterator[Outcome]:
+        """Of each combined behavior the outcomes of a need of which none holds."""
+        for actor in self.question.unless:
+            missed = next(n for n in actor.needs if not any(self._holds(o, found) for o in n))
+            yield from (o for o in missed if self.sampled(o[0]) is not None)
 
     def _decided(self, found: Found) -> set[Outcome]:
         """Of each need one outcome that holds."""

@@ -198,16 +198,21 @@ class _Visit:
         path.reverse()
         by_tick = {(step.at, d): values for step in path for d, values in step.read.items()}
         memories = {(step.at, d): memory for step in path for d, memory in step.memories.items()}
+        held = self._held_at(at)
         decisions = [
             one
-            for outcome in self._counting(at)
+            for outcome in self._counting(held)
             for one in self._decision(outcome, at, by_tick, memories)
         ]
+        for place, which in self._denied(held):
+            tick = self._timing.sample(place, at)
+            assert tick is not None, "what is held was sampled"
+            decisions.append(Decision(place, which, tick, by_tick[tick, place], is_denied=True))
         ticks = [(time, d, values) for (time, d), values in by_tick.items()]
         return Reached(at, decisions, moments(self._question, self._timing, ticks))
 
-    def _counting(self, at: int) -> list[Outcome]:
-        """Of each need an outcome that holds."""
+    def _held_at(self, at: int) -> dict[int, int]:
+        """The outcomes in effect of each decider that has any by then."""
         place = len(self._steps) - 1
         held: dict[int, int] = {}
         # The state itself is not kept; what each decider decided is worked out again.
@@ -220,6 +225,18 @@ class _Visit:
                 sampled = self._timing.sample(d, at)
                 if d not in held and sampled == step.at:
                     held[d] = self._outcomes_at(step, d)
+        return held
+
+    def _denied(self, held: Mapping[int, int]) -> Iterator[Outcome]:
+        """Of each combined behavior the outcomes of a need of which none holds."""
+        for actor in self._question.unless:
+            missed = next(
+                need for need in actor.needs if not any(held.get(d, 0) >> o & 1 for d, o in need)
+            )
+            yield from (outcome for outcome in missed if outcome[0] in held)
+
+    def _counting(self, held: Mapping[int, int]) -> list[Outcome]:
+        """Of each need an outcome that holds."""
         actors = (self._question.first, self._question.second)
         chosen = {
             next((d, o) for d, o in need if held.get(d, 0) >> o & 1)

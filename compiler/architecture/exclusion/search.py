@@ -271,7 +271,7 @@ class _Search:
         if options:
             middle = len(options) // 2
             return (low, options[middle - 1]), (options[middle], high)
-        between = 0.5 * low + 0.5 * high
+        between = middle_of(low, high)
         if between in {low, high}:
             return (low, low), (high, high)
         return (low, between), (between, high)
@@ -298,6 +298,15 @@ def merged(atoms: list[Atom]) -> tuple[Atom, ...]:
     return tuple(known.values())
 
 
+def middle_of(low: float, high: float) -> float:
+    """The middle of two numbers, however large; halves of the smallest doubles are rounded.
+
+    >>> middle_of(-1e308, 1e308), middle_of(5e-324, 5e-324)
+    (0.0, 5e-324)
+    """
+    return min(max(0.5 * low + 0.5 * high, low), high)
+
+
 def round_between(low: float, high: float, unit: float = 1.0) -> float:
     """A number from low to high that is short to write in the unit; near the middle.
 
@@ -307,7 +316,7 @@ def round_between(low: float, high: float, unit: float = 1.0) -> float:
     if high - low > VAST * unit:
         near = 0.0 if low <= 0.0 <= high else min(low, high, key=abs)
         low, high = max(low, near - abs(near) - unit), min(high, near + abs(near) + unit)
-    middle = 0.5 * low + 0.5 * high
+    middle = middle_of(low, high)
     size = (high - low) / unit
     if size <= NARROW * abs(middle / unit):
         short = (round(middle / unit, digits) * unit for digits in range(16))

@@ -20,7 +20,8 @@ class Decision:
     """What a decider decided at a tick: the outcome that counts, and what its entries were.
 
     values: of the signal, or own value, of each entry, by the entry's name. begins: it is where a
-    rule began to hold, which holds on.
+    rule began to hold, which holds on. is_denied: it is that the outcome does not hold, so that a
+    combined behavior does not act in the place of both.
     """
 
     decider: int
@@ -28,6 +29,7 @@ class Decision:
     sampled: int
     values: Mapping[str, float]
     begins: bool = False
+    is_denied: bool = False
 
 
 def told(
@@ -98,7 +100,8 @@ def _sample(
 
 def _all_of(one: Decision, decisions: list[Decision]) -> list[int]:
     """The outcomes that the same decision has."""
-    return [o.outcome for o in decisions if (o.decider, o.begins) == (one.decider, one.begins)]
+    kind = (one.decider, one.begins, one.is_denied)
+    return [o.outcome for o in decisions if (o.decider, o.begins, o.is_denied) == kind]
 
 
 def _effect(timing: Timing, at: int, one: Decision, outcomes: list[int], decider: Decider) -> str:
@@ -109,7 +112,17 @@ def _effect(timing: Timing, at: int, one: Decision, outcomes: list[int], decider
     when = f"until {number(timing.seconds(ends))} s"
     if starts == at:
         when = f"from {number(timing.seconds(starts))} s"
-    return f"{said(decider, outcomes)} {when}"
+    what = _said_not(decider, outcomes) if one.is_denied else said(decider, outcomes)
+    return f"{what} {when}"
+
+
+def _said_not(decider: Decider, outcomes: list[int]) -> str:
+    """What is not decided, in words."""
+    if decider.how is How.CONDITION:
+        return f"{decider.name} does not act"
+    names = listed([decider.outcomes[outcome] for outcome in outcomes], last="or")
+    verb = "choose" if decider.how in {How.FIRST, How.ONE} else "let"
+    return f"{decider.name} does not {verb} {names}" + (" hold" if verb == "let" else "")
 
 
 def said(decider: Decider, outcomes: list[int]) -> str:
@@ -151,7 +164,8 @@ def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
     for one in decisions:
         decider = question.deciders[one.decider]
         if decider.how is How.ONE:
-            yield f"{decider.name} is ever in {decider.outcomes[one.outcome]}"
+            mode = decider.outcomes[one.outcome]
+            yield f"{decider.name} is ever {'not ' if one.is_denied else ''}in {mode}"
         used = names_used(decider, one.outcome)
         for entry in decider.entries:
             if entry.name not in used or entry.name not in one.values:

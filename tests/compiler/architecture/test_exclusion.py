@@ -148,6 +148,21 @@ REFUTED: dict[str, Case] = {
             acting("both", "p 0.25 gt", replaces=("first", "second")),
         ]
     ),
+    "a combined behavior that looks again while both go on": wired(
+        [
+            acting("first", "p 0.75 gt", period=2 * STEP, response=0.0),
+            acting("second", period=2 * STEP, response=0.0),
+            acting("both", "p 0.75 gt", response=0.0, replaces=("first", "second")),
+        ]
+    ),
+    "a combined behavior that looks again while a rule lasts": wired(
+        [
+            acting("first"),
+            acting("second", period=4 * STEP),
+            choosing("layers", [(0, "p 0.75 gt", None, 3 * STEP)], ONLY_FLEE, **LAYERS),
+            acting("both", "p 0.75 gt", response=0.0, replaces=("first", "second")),
+        ]
+    ),
     "a combined behavior of three, of which two act": wired(
         [
             acting("first", NEAR),
@@ -237,6 +252,18 @@ def test_a_witness_is_told_in_one_sentence_with_units_and_times() -> None:
         "at 0.05 s clearance is 1 m (seek acts from 0.1 s)"
     )
     assert "the same period and response_time" in answer.help
+
+
+def test_a_witness_tells_why_a_combined_behavior_does_not_act_instead() -> None:
+    case = REFUTED["a combined behavior that looks again while both go on"]
+
+    answer = decide(case.question)
+
+    assert isinstance(answer, Witness)
+    assert answer.text == (
+        "first and second both act at 0.01 s: at 0 s a.r is 1 (first acts until 0.02 s), "
+        "at 0.01 s a.r is 0.4 (both does not act from 0.01 s)"
+    )
 
 
 def test_what_a_node_keeps_by_itself_is_said_to_be_assumed() -> None:
