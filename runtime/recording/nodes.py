@@ -8,6 +8,8 @@ What a node says stands at its tick: it takes effect its response time later.
 from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
+
 from runtime.arbiter import Arbiter
 from runtime.architecture import Architecture, Node
 from runtime.arrays import Array
@@ -81,9 +83,10 @@ def fields_of_reads(arbiter: Arbiter) -> list[Field]:
 def _tell_acting(messages: Messages, robot: str, node: Node, track: RobotTrack, place: int) -> None:
     acting = track.acting
     topic = topic_of(robot, node.name, ACTING)
-    rows = acting.acts[:, place : place + 1]
+    rows = np.column_stack([acting.acts[:, place], acting.weights[:, place]])
     flag = Field("acts", is_flag=True, about="nothing keeps it from acting")
-    tell_rows(messages, topic, [flag], acting.times, rows)
+    weight = Field("weight", about="how strongly choices in effect name it")
+    tell_rows(messages, topic, [flag, weight], acting.times, rows)
 
 
 def _tell_channels(messages: Messages, robot: Robot, track: RobotTrack) -> None:

@@ -26,6 +26,9 @@ ARCHITECTURE: Final = "application/vnd.specc"
 DOCUMENT: Final = "application/json"
 FORMAT: Final = 1
 """The version of the scenario's document."""
+MEASURED: Final = "base/measured"
+CLOSE: Final = "base/close"
+THINGS: Final = "/world/things"
 WARNING: Final = 3
 """`Log.WARNING`."""
 
@@ -37,6 +40,7 @@ def recorded_run(run: Run) -> bytes:
     for robot, track in zip(run.scenario.robots, run.robots, strict=True):
         tell_robot(messages, robot, track)
     _tell_measures(messages, run)
+    _tell_things(messages, run)
     _tell_events(messages, run)
     attachments = [
         (f"{robot.name}.specc", ARCHITECTURE, _artifact(run, place))
@@ -79,27 +83,44 @@ def _artifact(run: Run, place: int) -> bytes:
 
 
 def _tell_measures(messages: Messages, run: Run) -> None:
-    """What the world knows of each robot, at the instants of its poses."""
+    """What the world knows of each robot: at the instants of its poses, and how near it is always.
+
+    Between two instants of poses a robot may come nearer than at both: `close` is told each step.
+    """
     world = run.world
-    here = np.searchsorted(world.close_times, world.times)
     metres, lux = Unit("m", 1.0), Unit("lx", 1.0)
-    fields = [
-        Field("clearance", metres, about="to the nearest other thing or wall"),
-        Field("contacts", about="how many things it touches"),
-        Field("light", lux, about="at its middle"),
+    measured = [
+        *_pose_fields(),
         Field("speed", Unit("m/s", 1.0)),
         Field("turn", Unit("rad/s", 1.0)),
+        Field("light", lux, about="at its middle"),
+    ]
+    close = [
+        Field("clearance", metres, about="to the nearest other thing or wall"),
+        Field("contacts", about="how many things it touches"),
     ]
     for place, robot in enumerate(run.scenario.robots):
-        rows = np.column_stack(
-            [
-                world.clearance[here, place],
-                world.contacts[here, place],
-                world.light[:, place],
-                world.motions[:, place],
-            ]
-        )
-        tell_rows(messages, f"/{robot.name}/base/measured", fields, world.times, rows)
+        poses = world.poses[:, len(run.layout.things) + place]
+        rows = np.column_stack([poses, world.motions[:, place], world.light[:, place]])
+        tell_rows(messages, f"/{robot.name}/{MEASURED}", measured, world.times, rows)
+        near = np.column_stack([world.clearance[:, place], world.contacts[:, place]])
+        tell_rows(messages, f"/{robot.name}/{CLOSE}", close, world.close_times, near)
+
+
+def _tell_things(messages: Messages, run: Run) -> None:
+    """Where each thing is: first, last, and around each change, for most stand still mostly."""
+    world = run.world
+    for place, thing in enumerate(run.layout.things):
+        poses = world.poses[:, place]
+        moves = np.any(np.diff(poses, axis=0) != 0.0, axis=1)
+        told = np.concatenate([[True], moves]) | np.concatenate([moves, [True]])
+        topic = f"{THINGS}/{thing.name}"
+        tell_rows(messages, topic, _pose_fields(), world.times[told], poses[told])
+
+
+def _pose_fields() -> list[Field]:
+    metres, radians = Unit("m", 1.0), Unit("rad", 1.0)
+    return [Field("x", metres), Field("y", metres), Field("heading", radians, about="not wrapped")]
 
 
 def _tell_events(messages: Messages, run: Run) -> None:
