@@ -121,7 +121,7 @@ class Sampled:
         if len(entry.values) == 1:
             return Number(entry.values[0])
         raw = self._raw(place, entry)
-        if entry.signal < 0 or entry.limit is not Limit.CLIPS or not self._leaves(entry):
+        if entry.signal < 0 or entry.limit is Limit.WRAPS or not self._leaves(entry):
             return raw
         return Apply("clip", (raw, Number(entry.low), Number(entry.high)))
 

@@ -10,13 +10,14 @@ import math
 from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Final, TypeAlias, final
+from typing import Final, final
 
 from compiler.architecture.exclusion.answer import Moment, Proof, Undecided
-from compiler.architecture.exclusion.conditions import SHORT, Sampled, remembers
+from compiler.architecture.exclusion.conditions import Sampled, remembers
 from compiler.architecture.exclusion.formula import Formula, both, denied, holds
+from compiler.architecture.exclusion.memory import Memory, conditions_of, decided, outcomes_of
 from compiler.architecture.exclusion.overlap import Timing
-from compiler.architecture.exclusion.question import Actor, Decider, How, Outcome, Question
+from compiler.architecture.exclusion.question import Actor, Outcome, Question
 from compiler.architecture.exclusion.search import Found, Open, solve
 from compiler.architecture.exclusion.witness import Decision, moments
 from spec_schema.wording import listed
@@ -24,9 +25,6 @@ from spec_schema.wording import listed
 MOST_TRIED: Final = 100_000
 MOST_PATTERNS: Final = 256
 BUDGET: Final = 300
-
-Memory: TypeAlias = tuple[int, ...]
-"""For each rule how many ticks it has held, -1 where it does not; no further than matters."""
 
 
 @final
@@ -142,7 +140,7 @@ class _Visit:
             memories = {}
             for i, row, values in zip(due, pattern.rows, pattern.values, strict=True):
                 decider = self._question.deciders[self._used[i]]
-                memory, outcomes = _decided(decider, now[i].memory, row)
+                memory, outcomes = decided(decider, now[i].memory, row)
                 waiting = (*now[i].waiting, (self._timing.responses[self._used[i]], outcomes))
                 after[i] = _in_effect(_One(memory, waiting, now[i].held))
                 read[self._used[i]] = values
@@ -157,7 +155,7 @@ class _Visit:
     def _readable(self, due: tuple[int, ...]) -> Iterator[_Pattern]:
         """All that deciders that tick together can find."""
         many = [Sampled(self._question, self._used[i], 0, lambda _signal: 0) for i in due]
-        rows = [list(_conditions(sampled)) for sampled in many]
+        rows = [list(conditions_of(sampled)) for sampled in many]
         flat = [formula for row in rows for formula in row]
         variables = {k: v for sampled in many for k, v in sampled.variables().items()}
         waiting: list[tuple[tuple[bool, ...], Found | None]] = [((), None)]
@@ -254,8 +252,8 @@ class _Visit:
             for key, name in names.items()
             if name in step.read[decider]
         }
-        row = tuple(holds(formula, values) for formula in _conditions(sampled))
-        return _outcomes(given, step.memories[decider], row)
+        row = tuple(holds(formula, values) for formula in conditions_of(sampled))
+        return outcomes_of(given, step.memories[decider], row)
 
     def _decision(
         self,
@@ -311,56 +309,6 @@ class _Visit:
             f"what {listed(names, last='and')} can remember has too many states to visit",
             "let one arbiter of `rules` choose between them, or let rules remember less",
         )
-
-
-def _conditions(sampled: Sampled) -> Iterator[Formula]:
-    """All that a decider's decision depends on, but its memory."""
-    decider = sampled.decider
-    yield sampled.inside()
-    if decider.how in {How.FIRST, How.ALL}:
-        for rule in decider.rules:
-            yield sampled.truth(rule.when) if rule.when is not None else True
-            yield sampled.truth(rule.until) if rule.until is not None else False
-    elif decider.how is not How.ONE:
-        for outcome in range(len(decider.outcomes)):
-            yield sampled.outcome(outcome)
-
-
-def _decided(decider: Decider, memory: Memory, row: tuple[bool, ...]) -> tuple[Memory, int]:
-    """The rules' new memory, and the outcomes that hold, as bits."""
-    after = tuple(
-        _held(decider, i, age, when=row[2 * i + 1], until=row[2 * i + 2])
-        for i, age in enumerate(memory)
-    )
-    return after, _outcomes(decider, after, row)
-
-
-def _outcomes(decider: Decider, memory: Memory, row: tuple[bool, ...]) -> int:
-    if not row[0]:
-        return 0
-    match decider.how:
-        case How.FIRST:
-            first = next((i for i, age in enumerate(memory) if age >= 0), None)
-            return 0 if first is None else 1 << decider.rules[first].choice
-        case How.ALL:
-            found = 0
-            for rule, age in zip(decider.rules, memory, strict=True):
-                found |= (1 << rule.choice) if age >= 0 else 0
-            return found
-        case How.ONE:
-            return (1 << len(decider.outcomes)) - 1
-    return sum(1 << i for i, bit in enumerate(row[1:]) if bit)
-
-
-def _held(decider: Decider, rule: int, age: int, *, when: bool, until: bool) -> int:
-    """For how many ticks a rule holds after one more, as `runtime.arbitration.rules` has it."""
-    given = decider.rules[rule]
-    needed = math.ceil(given.lasts * SHORT / decider.period) if given.lasts > 0.0 else 0
-    if age < 0:
-        return 0 if when else -1
-    age = min(age + 1, needed)
-    is_released = not when and (given.until is None or until)
-    return -1 if is_released and age >= needed else age
 
 
 def _in_effect(one: _One) -> _One:

@@ -1,6 +1,7 @@
 """Exclusion proved by structure, conditions, memory and time, or refuted with a state."""
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from compiler.architecture.exclusion.question import (
 )
 from compiler.check import check
 from runtime.arbiter import Paradigm
+from runtime.architecture import Outside
 from runtime.code import Code
 from runtime.program import Unit
 from tests.compiler.architecture.exclusions import INPUTS, STEP, Case, N, acting, arbiter, wired
@@ -98,6 +100,16 @@ PROVED: dict[str, Case] = {
 PROVED["a combined behavior in the place of both"] = wired(
     [acting("first", NEAR), acting("second"), acting("both", replaces=("first", "second"))]
 )
+# A reading beyond the domain keeps the arbiter from deciding, but its rules go on with the edge.
+BEYOND = {"p": ("a.r", 1.5, Outside.INHIBIT), "q": "b.r"}
+
+
+def latched_beyond(when: str) -> Case:
+    layers = choosing("layers", [(0, when, "p 0.25 lt", 0.0)], ONLY_FLEE, **LAYERS)
+    return wired([acting("first"), acting("second"), replace(layers, inputs=BEYOND)])
+
+
+PROVED["a rule that would begin only beyond the domain"] = latched_beyond("p 2 gt")
 REFUTED: dict[str, Case] = {
     "conditions that touch": wired([acting("first", "p 0.5 le"), acting("second", FAR_OFF)]),
     "other response times": wired([acting("first", NEAR), acting("second", FAR_OFF, **APART)]),
@@ -119,6 +131,7 @@ REFUTED: dict[str, Case] = {
             choosing("layers", [(0, NEAR, "p 0.75 gt", 0.0), (1, FAR_OFF, None, 0.0)], **LAYERS),
         ]
     ),
+    "a rule that begins at the edge of the domain": latched_beyond("p 2 eq"),
     "a rule that lasts": wired(
         [
             acting("first"),
