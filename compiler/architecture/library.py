@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import TypeAlias, final
+from typing import TypeAlias, TypeVar, final
 
 from compiler.assemble import assembled
 from compiler.check_behavior import check_behavior
@@ -13,6 +13,7 @@ from runtime.arbiter import Arbiter
 from runtime.program import Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.kinds import MODELS, AnySpec
 from spec_schema.load import Examined, Loaded, examine
 from spec_schema.places import Path
 from spec_schema.suggest import nearest
@@ -30,6 +31,9 @@ class Behavior:
     program: Program
     warnings: tuple[Diagnostic, ...]
 
+
+Lowered = TypeVar("Lowered")
+Spec = TypeVar("Spec", bound=AnySpec)
 
 Compiler: TypeAlias = Callable[[Loaded, BehaviorSpec], Behavior]
 """From a behavior spec to its program; raises SpecError."""
@@ -97,6 +101,28 @@ class Library:
             return None
         self._refuse(file, examined.mistakes)
         return None if examined.mistakes else examined.loaded
+
+    def lowered(
+        self,
+        loaded: Loaded,
+        path: Path,
+        text: str,
+        model: type[Spec],
+        lower: Callable[[Spec, Loaded, Findings], Lowered],
+        findings: Findings,
+    ) -> Lowered | None:
+        """What `lower` makes of the spec in the file named at `path`; None where it can't be used.
+
+        What is wrong in that file is kept with it.
+        """
+        kind = next(kind for kind, known in MODELS.items() if known is model)
+        found = self.spec(loaded, path, text, kind, findings)
+        if found is None or not isinstance(found.spec, model):
+            return None
+        own = Findings(found)
+        made = lower(found.spec, found, own)
+        self.refuse(found, own.diagnostics)
+        return None if own.has_errors else made
 
     def refuse(self, loaded: Loaded, found: tuple[Diagnostic, ...]) -> None:
         """Keep what is wrong in a spec that was named."""

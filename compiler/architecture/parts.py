@@ -88,23 +88,11 @@ class Parts:
 
 def gather(spec: ArchitectureSpec, loaded: Loaded, library: Library, findings: Findings) -> Parts:
     """The body and the nodes, with a finding for each file that can't be used."""
-    body = _body(spec, loaded, library, findings)
+    body = library.lowered(loaded, ("body",), spec.body, BodySpec, lower_body, findings)
     nodes = {
         name: _part(name, node, loaded, library, findings) for name, node in spec.nodes.items()
     }
     return Parts(spec, loaded, body, nodes)
-
-
-def _body(
-    spec: ArchitectureSpec, loaded: Loaded, library: Library, findings: Findings
-) -> BodyPart | None:
-    found = library.spec(loaded, ("body",), spec.body, "body", findings)
-    if found is None or not isinstance(found.spec, BodySpec):
-        return None
-    own = Findings(found)
-    part = lower_body(found.spec, found, own)
-    library.refuse(found, own.diagnostics)
-    return None if own.has_errors else part
 
 
 def _part(name: str, spec: NodeSpec, loaded: Loaded, library: Library, findings: Findings) -> Part:

@@ -57,7 +57,7 @@ def compile_parts_of_scenario(
     seed: int | None = None,
 ) -> CompiledScenario | None:
     """The passes, in order; None where something can't be run, which the findings tell."""
-    world = _world(spec, loaded, library, findings)
+    world = library.lowered(loaded, ("world",), spec.world, WorldSpec, lower_world, findings)
     robots = Robots()
     for name, robot in spec.robots.items():
         _add(name, robot, loaded, library, robots, findings)
@@ -86,18 +86,6 @@ def compile_parts_of_scenario(
     )
     warnings = (*findings.diagnostics, *robots.warnings)
     return CompiledScenario(scenario, warnings, (*findings.notes, *robots.notes))
-
-
-def _world(
-    spec: ScenarioSpec, loaded: Loaded, library: Library, findings: Findings
-) -> World | None:
-    found = library.spec(loaded, ("world",), spec.world, "world", findings)
-    if found is None or not isinstance(found.spec, WorldSpec):
-        return None
-    own = Findings(found)
-    world = lower_world(found.spec, found, own)
-    library.refuse(found, own.diagnostics)
-    return None if own.has_errors else world
 
 
 def _add(
