@@ -45,9 +45,8 @@ class Latches:
         return [since is not None for since in self._since]
 
 
-@final
-class Rules:
-    """Exclusive choice: the first rule that holds has its choice; 0 for all where none does."""
+class _ByRules:
+    """What decides by rules that latch, each of which has a choice."""
 
     def __init__(self, arbiter: Arbiter) -> None:
         self._latches = Latches(arbiter)
@@ -58,38 +57,32 @@ class Rules:
         """Let no rule hold."""
         self._latches.reset()
 
-    def decide(self, reads: Array, time: float) -> Array:
-        """1 for the choice of the first rule that holds."""
-        numbers = np.zeros(self._count)
-        holding = self._latches.holding(reads, time)
-        if True in holding:
-            numbers[self._choices[holding.index(True)]] = 1.0
-        return numbers
-
     def learn(self, reward: float) -> None:
         """Do nothing: rules do not learn."""
 
+    def _holding(self, reads: Array, time: float) -> list[int]:
+        """The choices of the rules that hold, in their order."""
+        holds = self._latches.holding(reads, time)
+        return [choice for choice, held in zip(self._choices, holds, strict=True) if held]
+
 
 @final
-class Subsumption:
+class Rules(_ByRules):
+    """Exclusive choice: the first rule that holds has its choice; 0 for all where none does."""
+
+    def decide(self, reads: Array, time: float) -> Array:
+        """1 for the choice of the first rule that holds."""
+        numbers = np.zeros(self._count)
+        numbers[self._holding(reads, time)[:1]] = 1.0
+        return numbers
+
+
+@final
+class Subsumption(_ByRules):
     """Layers: each that wants to act is chosen; channels say which has its way (Brooks 1986)."""
-
-    def __init__(self, arbiter: Arbiter) -> None:
-        self._latches = Latches(arbiter)
-        self._choices = [rule.choice for rule in arbiter.rules]
-        self._count = len(arbiter.choices)
-
-    def reset(self, seed: int) -> None:  # noqa: ARG002  # there is no chance in it
-        """Let no layer hold."""
-        self._latches.reset()
 
     def decide(self, reads: Array, time: float) -> Array:
         """1 for the choice of each layer that holds."""
         numbers = np.zeros(self._count)
-        for choice, holds in zip(self._choices, self._latches.holding(reads, time), strict=True):
-            if holds:
-                numbers[choice] = 1.0
+        numbers[self._holding(reads, time)] = 1.0
         return numbers
-
-    def learn(self, reward: float) -> None:
-        """Do nothing: layers do not learn."""
