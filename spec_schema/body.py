@@ -1,7 +1,7 @@
 """The model of a body: what of a robot stands in the world, moves and senses."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Final, Literal, Self, final
+from typing import Annotated, Final, Literal, Self, TypeAlias, final
 
 from pydantic import Field, Strict, model_validator
 
@@ -26,46 +26,47 @@ OWNERS: Final = {
 }
 """Which sensors have what only some have."""
 
+LargestSpeed: TypeAlias = Annotated[
+    Quantity, Field(description="The largest speed.", examples=["0.5 m/s"])
+]
+LargestTurn: TypeAlias = Annotated[
+    Quantity, Field(description="The largest turn rate.", examples=["3 rad/s"])
+]
+Acceleration: TypeAlias = Annotated[
+    Quantity, Field(description="The largest rate of change of the speed.", examples=[2])
+]
+Spin: TypeAlias = Annotated[
+    Quantity, Field(description="The largest rate of change of the turn rate.", examples=[20])
+]
+
 
 @final
 class DifferentialSpec(StrictModel):
     """Two driven wheels; the channels are `base.speed` and `base.turn`."""
 
     track: Quantity = Field(description="The distance of the wheels.", examples=["20 cm"])
-    speed: Quantity = Field(description="The largest speed.", examples=["0.5 m/s"])
-    turn: Quantity = Field(description="The largest turn rate.", examples=["3 rad/s"])
+    speed: LargestSpeed
+    turn: LargestTurn
     traction: Annotated[Number, Field(gt=0)] = Field(
         default=0.8,
         description="The friction of the wheels on the floor: what can be pushed is limited by it.",
         examples=[0.8],
     )
-    acceleration: Quantity = Field(
-        default="2 m/s^2", description="The largest rate of change of the speed.", examples=[2]
-    )
-    spin: Quantity = Field(
-        default="20 rad/s^2",
-        description="The largest rate of change of the turn rate.",
-        examples=[20],
-    )
+    acceleration: Acceleration = "2 m/s^2"
+    spin: Spin = "20 rad/s^2"
 
 
 @final
 class HolonomicSpec(StrictModel):
     """Driven in any direction; the channels are `base.forward`, `base.left` and `base.turn`."""
 
-    speed: Quantity = Field(description="The largest speed.", examples=["0.5 m/s"])
-    turn: Quantity = Field(description="The largest turn rate.", examples=["3 rad/s"])
+    speed: LargestSpeed
+    turn: LargestTurn
     traction: Annotated[Number, Field(gt=0)] = Field(
         default=0.8, description="The friction of its feet on the floor.", examples=[0.8]
     )
-    acceleration: Quantity = Field(
-        default="2 m/s^2", description="The largest rate of change of the speed.", examples=[2]
-    )
-    spin: Quantity = Field(
-        default="20 rad/s^2",
-        description="The largest rate of change of the turn rate.",
-        examples=[20],
-    )
+    acceleration: Acceleration = "2 m/s^2"
+    spin: Spin = "20 rad/s^2"
 
 
 @final
