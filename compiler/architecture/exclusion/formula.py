@@ -65,28 +65,26 @@ Formula: TypeAlias = bool | Atom | All | Some
 
 def both(parts: Iterable[Formula]) -> Formula:
     """All of them, without what is plain."""
-    kept: list[Formula] = []
-    for part in parts:
-        if part is False:
-            return False
-        if isinstance(part, All):
-            kept.extend(part.parts)
-        elif part is not True:
-            kept.append(part)
-    return kept[0] if len(kept) == 1 else All(tuple(kept)) if kept else True
+    return _joined(parts, All, plain=True)
 
 
 def either(parts: Iterable[Formula]) -> Formula:
     """At least one of them, without what is plain."""
+    return _joined(parts, Some, plain=False)
+
+
+def _joined(parts: Iterable[Formula], join: type[All | Some], *, plain: bool) -> Formula:
+    """The parts in one level; plain: what a part adds nothing by being. Its opposite is all."""
     kept: list[Formula] = []
     for part in parts:
-        if part is True:
-            return True
-        if isinstance(part, Some):
+        if isinstance(part, bool):
+            if part != plain:
+                return part
+        elif isinstance(part, join):
             kept.extend(part.parts)
-        elif part is not False:
+        else:
             kept.append(part)
-    return kept[0] if len(kept) == 1 else Some(tuple(kept)) if kept else False
+    return kept[0] if len(kept) == 1 else join(tuple(kept)) if kept else plain
 
 
 def denied(formula: Formula) -> Formula:
