@@ -11,7 +11,7 @@ from runtime.program import Program
 from verifier.diagnosis.diagnose import diagnose
 from verifier.fidelity.judging.stuck import with_stuck
 from verifier.fidelity.judging.verdict import advice_on_open
-from verifier.fidelity.stretches.needs import needs_of, parts_of
+from verifier.fidelity.stretches.needs import parts_of
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.limits.limits import limits_of
 from verifier.report.advice import advised
@@ -52,14 +52,14 @@ def explain(
 ) -> Examination:
     """What `examine` does, with the `judgement` of `trace` at hand."""
     report, study = judgement.report, judgement.study
-    origins, needs = origins_of(program), needs_of(program, trace)
+    origins = origins_of(program)
     if only_verdict:
-        return Examination(with_stuck(report, needs), origins=origins)
+        return Examination(with_stuck(report, program, trace), origins=origins)
     tell("why it departs")
     diagnosis = diagnose(program, trace, study, report)
     moot = advice_on_open(report.variables, report.trace.judged)
     known = advised(report, diagnosis, judgement.switching, program, moot)
-    advisory = with_stuck(known, needs)
+    advisory = with_stuck(known, program, trace)
     tell("features of the field")
     features = compare_features(program, trace, study)
     partial = Examination(advisory, judgement.switching, diagnosis, None, features, None, origins)

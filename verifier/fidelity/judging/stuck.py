@@ -9,11 +9,11 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.program import Kind
-from verifier.fidelity.stretches.needs import Needs
+from runtime.program import Kind, Program
+from verifier.fidelity.stretches.needs import Needs, needs_of
 from verifier.report.report import Report, Verdict
 from verifier.report.wording import number
-from verifier.traces.trace import Series
+from verifier.traces.trace import Series, Trace
 
 LONG: Final = 40
 """So many samples in a row, at least."""
@@ -39,9 +39,9 @@ def stuck_of(needs: Needs) -> tuple[Stuck, ...]:
     return tuple(each for each in found if each is not None)
 
 
-def with_stuck(report: Report, needs: Needs) -> Report:
+def with_stuck(report: Report, program: Program, trace: Trace) -> Report:
     """The report, with what stuck sensors may explain said first; a PASS as it is."""
-    found = () if report.verdict is Verdict.PASS else stuck_of(needs)
+    found = () if report.verdict is Verdict.PASS else stuck_of(needs_of(program, trace))
     if not found:
         return report
     said = tuple(_told(each) for each in found)
