@@ -34,6 +34,21 @@ def within(shape: Shape, at: Pose, arena: Corners) -> bool:
     return True
 
 
+def overlap_floor(shape: Shape, at: Pose, arena: Corners) -> bool:
+    """Whether any of a footprint lies on the floor of the arena.
+
+    A part through which no wall goes is on one side of them, as its middle is.
+    """
+    walls = tuple(zip(arena, (*arena[1:], arena[0]), strict=True))
+    for corners, radius in _parts(shape, at):
+        middle = (math.fsum(x for x, _ in corners), math.fsum(y for _, y in corners))
+        if _inside((middle[0] / len(corners), middle[1] / len(corners)), arena):
+            return True
+        if any(_depth((corners, radius), (wall, 0.0)) > TOUCHING for wall in walls):
+            return True
+    return False
+
+
 def _parts(shape: Shape, at: Pose) -> Iterator[Part]:
     for disc in shape.discs:
         yield (placed(at, (disc.x, disc.y)),), disc.radius

@@ -5,6 +5,7 @@ from typing import Final
 from compiler.findings import Findings
 from compiler.lower_parts import origin_of
 from compiler.quantities import si_value
+from compiler.world.outside import check_inside
 from compiler.world.shapes import (
     STRAIGHT,
     Corners,
@@ -38,7 +39,7 @@ def lower_world(spec: WorldSpec, loaded: Loaded, findings: Findings) -> World:
     if ambient < 0.0:
         message = f"there is no less light than none (got {spec.ambient})"
         findings.error("S212", ("ambient",), message, "write 0 or more")
-    return World(
+    world = World(
         name=spec.name,
         about=spec.about or "",
         arena=arena,
@@ -49,6 +50,9 @@ def lower_world(spec: WorldSpec, loaded: Loaded, findings: Findings) -> World:
         lights=lights,
         source=origin_of(loaded),
     )
+    if not findings.has_errors:
+        check_inside(world, findings)
+    return world
 
 
 def _arena(spec: ArenaSpec, findings: Findings) -> Corners:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from compiler.architecture.timing import common, exact
 from compiler.check import check
-from compiler.world.overlap import overlap, within
+from compiler.world.overlap import overlap, overlap_floor, within
 from compiler.world.scenario import CompiledScenario, compile_scenario
 from runtime.world.model import Disc, Polygon, Pose, Shape
 
@@ -126,6 +126,32 @@ def test_within_means_clear_of_every_wall_of_a_room_with_a_corner() -> None:
     assert not within(ROUND, Pose(1.0, 3.0, 0.0), room)
     assert not within(ROUND, Pose(0.4, 1.0, 0.0), room)
     assert not within(SQUARE, Pose(2.4, 3.0, 0.0), room)
+
+
+@given(place, place, st.floats(-4, 4))
+def test_a_footprint_has_floor_where_a_fine_grid_finds_a_point_of_it_there(
+    x: float, y: float, turn: float
+) -> None:
+    """A second way: the room is a square with a corner cut out, and points are on its floor."""
+    room = ((-1.0, -1.0), (1.0, -1.0), (1.0, 0.0), (0.0, 0.0), (0.0, 1.0), (-1.0, 1.0))
+    side = np.linspace(-0.5, 0.5, 101)
+    a, b = np.meshgrid(side, side, indexing="ij")
+    u, v = x + np.cos(turn) * a - np.sin(turn) * b, y + np.sin(turn) * a + np.cos(turn) * b
+    inner = 1.0 - np.maximum(np.abs(u), np.abs(v))
+    depth = float(np.max(np.minimum(inner, np.maximum(-u, -v))))
+    found = overlap_floor(SQUARE, Pose(x, y, turn), room)
+
+    if depth > 1e-5:
+        assert found
+    elif depth < -0.01:
+        assert not found
+
+
+def test_a_footprint_as_large_as_the_room_has_floor_and_one_behind_its_wall_has_none() -> None:
+    room = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+
+    assert overlap_floor(SQUARE, Pose(0.0, 0.0, 0.0), room)
+    assert not overlap_floor(SQUARE, Pose(1.0, 0.0, 0.0), room)
 
 
 @pytest.mark.parametrize(
