@@ -58,7 +58,8 @@ def true_end() -> Array:
     heading = np.where(times < 0.025, 10.0 * times**2, 0.5 * times - 0.00625)
     speed = np.minimum(2.0 * times, 0.4)
     ways = np.array([speed * np.cos(heading), speed * np.sin(heading)]).sum(axis=1) * 1e-5
-    return np.array([2.0, 1.5]) + ways
+    found: Array = np.array([2.0, 1.5]) + ways
+    return found
 
 
 @cache
