@@ -5,15 +5,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from runtime import chance
 from runtime.architecture import Outside
 from runtime.code import Code
+from runtime.interpolation import lookup
 from runtime.program import Kind, Noise, Program, Role
 from runtime.scheduler.observer import What
 from runtime.scheduler.scheduler import Scheduler
 from runtime.simulate import simulate
-from tests.runtime.behaviors import NOWHERE, control, formula_program, state, van_der_pol
+from runtime.table import Axis, Method
+from tests.runtime.behaviors import (
+    NOWHERE,
+    control,
+    formula_program,
+    state,
+    tabulated,
+    van_der_pol,
+)
 from tests.runtime.hybrids import guard, with_modes
 from tests.runtime.scheduler.plane import STEP, N, Noted, Plain, Plane, architecture, scenario
 
@@ -47,6 +58,43 @@ def test_own_states_go_the_way_that_the_behavior_goes_alone() -> None:
     alone = simulate(van_der_pol(), {"x": 1.0}, 1.0, every=PERIOD)
     ticks = np.array([tick.register[:2] for _, tick in noted.ticks])
     np.testing.assert_allclose(ticks, alone.states[:10], atol=1e-8)  # 8 steps of order 4 a period
+
+
+def bent_van_der_pol(method: Method) -> Program:
+    """Its table with values that no formula of the program gives, over two axes with a control."""
+    axes = (*(Axis(name, -4.0, 4.0, 17, periodic=False) for name in ("x", "v")),)
+    return tabulated(
+        van_der_pol(4.0),
+        lambda x, v: np.stack([np.sin(v), np.cos(x) - np.abs(v)], axis=-1),
+        axes,
+        method,
+        coefficient="mu 2 mul",
+    )
+
+
+@pytest.mark.parametrize("method", [Method.LINEAR, Method.CUBIC])
+def test_a_behavior_with_tables_goes_their_way_and_not_its_formula_s(method: Method) -> None:
+    program = bent_van_der_pol(method)
+    _, noted = run(N("swing", own(program), PERIOD), 10 * EVERY, {"x": 1.0, "v": 0.3})
+
+    alone = simulate(program, {"x": 1.0, "v": 0.3}, 1.0, every=PERIOD)
+    ticks = np.array([tick.register[:2] for _, tick in noted.ticks])
+    # Tables bend at their cells, so that 8 steps a period lose some digits there.
+    np.testing.assert_allclose(ticks, alone.states[:10], atol=1e-4)
+    by_formula = simulate(van_der_pol(4.0), {"x": 1.0, "v": 0.3}, 1.0, every=PERIOD)
+    assert np.max(np.abs(ticks - by_formula.states[:10])) > 0.1
+
+
+@pytest.mark.parametrize("method", [Method.LINEAR, Method.CUBIC])
+@given(x=st.floats(-4.0, 4.0), v=st.floats(-4.0, 4.0))
+def test_a_command_of_tables_is_what_looking_up_gives(method: Method, x: float, v: float) -> None:
+    program = bent_van_der_pol(method)
+    node = N("swing", program, PERIOD, 0.0, {"x": "pos.x", "v": "pos.y"}, {"x": ("v", "rate", 1.0)})
+
+    _, noted = run(node, 1, x=x, y=v)
+
+    (looked_up,) = lookup(program.field.tables[0], np.array([[x, v]]))
+    assert noted.ticks[0][1].commands[0] == pytest.approx(2.0 * looked_up[1], abs=1e-12)
 
 
 @pytest.mark.parametrize("mode", ["rate", "set-point", "acceleration"])
