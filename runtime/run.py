@@ -12,7 +12,14 @@ import numpy as np
 from runtime.arrays import Array, frozen
 from runtime.recording.gathering import Gathering
 from runtime.recording.quantities import quantities_of
-from runtime.recording.tracks import Happening, LightFrames, Quantity, RobotTrack, WorldTrack
+from runtime.recording.tracks import (
+    Happening,
+    LightFrames,
+    Quantity,
+    RobotTrack,
+    Touch,
+    WorldTrack,
+)
 from runtime.scenario import Scenario
 from runtime.scheduler.nodes import Learner
 from runtime.scheduler.observer import Observer, Silent
@@ -44,8 +51,9 @@ class Run:
 
     scenario: with the seed that it was run with. duration: seconds. layout: where all stood at
     first, with things that were laid at random. robots: in the order of the scenario.
-    signals: every named quantity. floor: the light on it, where that was asked for. digest: of
-    the state at the end: equal exactly where all that follows would be equal.
+    signals: every named quantity. floor: the light on it, where that was asked for. touches: each
+    beginning of one, in the order of time. digest: of the state at the end: equal exactly where
+    all that follows would be equal.
     """
 
     scenario: Scenario
@@ -56,6 +64,7 @@ class Run:
     floor: LightFrames | None
     signals: Mapping[str, Quantity]
     events: tuple[Happening, ...]
+    touches: tuple[Touch, ...]
     audit: Audit
     digest: bytes
 
@@ -117,6 +126,7 @@ def run(
         floor=watch.floor(),
         signals=quantities_of(scenario.robots, tracks, looked),
         events=gathering.happenings(),
+        touches=tuple(watch.touches),
         audit=world.audit(),
         digest=scheduler.state_hash(),
     )
@@ -162,6 +172,10 @@ class _Watch:
         self._robots = range(len(scenario.robots))
         things = (thing.name for thing in world.layout.things)
         self._names = (*things, *(robot.name for robot in scenario.robots))
+        self._riders = tuple(robot.name for robot in scenario.robots)
+        self._owners = (*self._names, "walls")
+        self._touched: list[set[int]] = [set() for _ in self._robots]
+        self.touches: list[Touch] = []
         self._every = max(int(LOOK / scenario.step), 1)
         self._at: list[int] = []
         self._poses: list[Array] = []
@@ -181,7 +195,7 @@ class _Watch:
         """Look, at what is due at this instant."""
         steps, world = self._world.steps, self._world
         self._clearance.append([world.clearance(robot) for robot in self._robots])
-        self._contacts.append([float(_touching(world, robot)) for robot in self._robots])
+        self._contacts.append([float(self._touching(robot)) for robot in self._robots])
         if last or steps % self._every == 0:
             self._at.append(steps)
             self._poses.append(world.poses())
@@ -195,6 +209,17 @@ class _Watch:
             self._map.update()
             self._map_at.append(steps)
             self._lux.append(self._map.lux.copy())
+
+    def _touching(self, robot: int) -> int:
+        """How many others a robot touches; remember where it begins to."""
+        before, now = self._touched[robot], set[int]()
+        for contact in self._world.touching(robot):
+            if contact.owner not in now | before:
+                who, what = self._riders[robot], self._owners[contact.owner]
+                self.touches.append(Touch(self._world.time, who, what, contact.x, contact.y))
+            now.add(contact.owner)
+        self._touched[robot] = now
+        return len(now)
 
     def track(self) -> WorldTrack:
         """What was seen."""
@@ -216,11 +241,6 @@ class _Watch:
             return None
         times = frozen(np.array(self._map_at, dtype=np.float64) * self._step)
         return LightFrames(self._map.xs, self._map.ys, times, frozen(np.array(self._lux)))
-
-
-def _touching(world: SimulatedWorld, robot: int) -> int:
-    """How many others a robot touches."""
-    return len({contact.owner for contact in world.touching(robot)})
 
 
 def _cells(arena: tuple[tuple[float, float], ...]) -> tuple[int, int]:

@@ -1,33 +1,47 @@
 """A run as pictures draw it: the scene, everybody's trail, and what was required."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from runtime.architecture import Architecture, Way
 from runtime.arrays import Array, Booleans, Integers
-from runtime.recording.tracks import ActingTrack
+from runtime.recording.tracks import ActingTrack, SensorTrack
 from runtime.run import Run
-from runtime.scenario import Scenario
-from runtime.world.model import Thing
-from specc.drawn import write_picture
-from specc.figures.animation import Progress, animate
+from runtime.scenario import Robot, Scenario
+from runtime.world.model import Sensor, SensorKind, Thing
 from specc.figures.quantities import quantity, seconds
-from specc.figures.scene import NOBODY, Glow, Item, Lamp, Mark, Outcome, Scene, Trails
-from specc.figures.style_names import Style
-from specc.figures.world import draw_world
+from specc.figures.scene import (
+    NOBODY,
+    Eye,
+    EyeKind,
+    Glow,
+    Item,
+    Lamp,
+    Mark,
+    Outcome,
+    Said,
+    Scene,
+    Trails,
+)
 from verifier.report.requirement_results import Outcome as Judged
 from verifier.report.requirement_results import RequirementResult
 
 HELD: Final = {Judged.SATISFIED: True, Judged.VIOLATED: False, Judged.OPEN: None}
+NEARER: Final = 0.995
+"""The share of its reach below which a range says that something is there: it has noise."""
+EYES: Final = {
+    SensorKind.RANGE: EyeKind.RANGE,
+    SensorKind.SIGHT: EyeKind.SIGHT,
+    SensorKind.BUMP: EyeKind.BUMP,
+}
 
 
 def pictured(made: Run, requirements: Sequence[RequirementResult]) -> tuple[Scene, Trails]:
-    """What posters and animations show of a run; the light where the run kept it."""
+    """What posters and films show of a run; the light where the run kept it."""
     glow = None
-    if made.floor is not None:
+    if made.floor is not None and made.scenario.world.lights:
         glow = Glow(made.floor.xs, made.floor.ys, made.floor.times, made.floor.lux)
     return scene_of(made.scenario, made.layout.things, glow), _trails(made, requirements)
 
@@ -40,13 +54,46 @@ def scene_of(scenario: Scenario, things: Sequence[Thing], glow: Glow | None = No
         about=scenario.about,
         arena=np.array(scenario.world.arena),
         things=tuple(Item(thing.name, thing.shape, thing.is_fixed) for thing in things),
-        robots=tuple(Item(robot.name, robot.body.shape) for robot in scenario.robots),
+        robots=tuple(
+            Item(robot.name, robot.body.shape, eyes=tuple(map(_eye, drawn_sensors(robot))))
+            for robot in scenario.robots
+        ),
         lamps=tuple(
             Lamp(lamp.name, lamp.pose.x, lamp.pose.y, names.index(lamp.on) if lamp.on else NOBODY)
             for lamp in scenario.world.lights
         ),
         glow=glow,
+        seed=scenario.seed,
     )
+
+
+def drawn_sensors(robot: Robot) -> list[Sensor]:
+    """The sensors of a robot that films draw."""
+    return [sensor for sensor in robot.body.sensors if sensor.kind in EYES]
+
+
+def _eye(sensor: Sensor) -> Eye:
+    at = sensor.pose
+    return Eye(EYES[sensor.kind], at.x, at.y, at.heading, sensor.width, sensor.reach)
+
+
+def said_of(sensor: Sensor, track: SensorTrack) -> Said:
+    """What one of the drawn sensors said; its readings are in the order of `SensorKind`."""
+    readings, still = track.readings, np.zeros(len(track.times))
+    match sensor.kind:
+        case SensorKind.SIGHT:
+            seen, bearing, distance = readings.T
+            return Said(track.times, seen > 0.0, distance, bearing)
+        case SensorKind.RANGE:
+            distance = readings[:, 0]
+            return Said(track.times, distance < sensor.reach * NEARER, distance, still)
+        case _:
+            return Said(track.times, readings[:, 0] > 0.0, still, still)
+
+
+def said_now(sensor: Sensor, readings: Array) -> Said:
+    """What one of the drawn sensors says, at a time that is called zero."""
+    return said_of(sensor, SensorTrack(np.zeros(1), readings[np.newaxis]))
 
 
 def _trails(made: Run, requirements: Sequence[RequirementResult]) -> Trails:
@@ -68,9 +115,17 @@ def _trails(made: Run, requirements: Sequence[RequirementResult]) -> Trails:
         robots=poses,
         doers=tuple(names for names, _ in doing),
         acting=np.column_stack([acting for _, acting in doing]),
-        contacts=tuple(_contacts(made, poses)),
+        contacts=tuple(Mark(robots.index(t.robot), t.time, t.x, t.y) for t in made.touches),
         jams=tuple(jams),
         outcomes=tuple(Outcome(one.text, HELD[one.outcome], _margin(one)) for one in requirements),
+        said=tuple(
+            tuple(
+                said_of(sensor, said)
+                for sensor, said in zip(robot.body.sensors, track.sensors, strict=True)
+                if sensor.kind in EYES
+            )
+            for robot, track in zip(made.scenario.robots, made.robots, strict=True)
+        ),
     )
 
 
@@ -82,7 +137,10 @@ def who_acts(
     if not len(track.times):
         return (), acting
     rows = np.searchsorted(track.times, times + 1e-9, side="right") - 1
-    told = [winner(architecture, acts) for acts in track.acts]
+    told = [
+        winner(architecture, acts, weights)
+        for acts, weights in zip(track.acts, track.weights, strict=True)
+    ]
     names = [name for name in dict.fromkeys(told) if name]
     places = np.array([names.index(name) if name else NOBODY for name in told], dtype=np.int64)
     seen = rows >= 0
@@ -90,10 +148,11 @@ def who_acts(
     return tuple(names), acting
 
 
-def winner(architecture: Architecture, acts: Booleans) -> str:
+def winner(architecture: Architecture, acts: Booleans, weights: Array) -> str:
     """Who has its way on the first channel that is reached, empty for nobody.
 
-    Of a priority it is the highest that acts; where several are added or mixed it is all of them.
+    Of a priority it is the highest that acts, of a blend the one with the greatest weight; of a
+    sum it is all of them.
     """
     channel = next((c for c in architecture.channels if c.resolution.nodes), None)
     if channel is None:
@@ -101,21 +160,14 @@ def winner(architecture: Architecture, acts: Booleans) -> str:
     who = [node for node in channel.resolution.nodes if acts[node]]
     replaced = {part for node in who for part in architecture.nodes[node].replaces}
     who = [node for node in who if node not in replaced]
-    if channel.resolution.way is Way.PRIORITY:
-        who = who[:1]
-    return " + ".join(architecture.nodes[node].name for node in who)
-
-
-def _contacts(made: Run, poses: Array) -> list[Mark]:
-    """Where robots began to touch something."""
-    found = []
-    for robot in range(poses.shape[1]):
-        touching = made.world.contacts[:, robot] > 0.0
-        begins = np.flatnonzero(touching & ~np.concatenate([[False], touching[:-1]]))
-        for time in made.world.close_times[begins].tolist():
-            x, y = _at(made.world.times, poses[:, robot], time)
-            found.append(Mark(robot, time, x, y))
-    return found
+    names = [architecture.nodes[node].name for node in who]
+    match channel.resolution.way:
+        case Way.PRIORITY:
+            return names[0] if names else ""
+        case Way.BLEND if len(who) > 1:
+            return f"mostly {names[int(np.argmax(weights[who]))]}"
+        case _:
+            return " + ".join(names)
 
 
 def _at(times: Array, poses: Array, time: float) -> tuple[float, float]:
@@ -130,26 +182,3 @@ def _margin(one: RequirementResult) -> str:
         return ""
     margin = f"robustness {quantity(one.robustness, one.unit)}"
     return f"{margin} at {seconds(one.witness.time)}" if one.witness else margin
-
-
-def write_poster(
-    made: Run, requirements: Sequence[RequirementResult], path: Path, style: Style = Style.SCREEN
-) -> None:
-    """Write the poster of a run as .svg, .png or .pdf; the light where the run kept it.
-
-    Raises:
-        SpecError: another suffix, or a file that can't be written.
-    """
-    write_picture(draw_world(*pictured(made, requirements), style), path, style)
-
-
-def write_film(
-    made: Run, path: Path, progress: Progress | None = None, style: Style = Style.SCREEN
-) -> None:
-    """Write a run as .gif or .mp4; the light as often as the run kept it.
-
-    Raises:
-        SpecError: another suffix, .mp4 without ffmpeg, or a file that can't be written.
-    """
-    scene, trails = pictured(made, ())
-    animate(scene, trails, path, progress, style=style)

@@ -10,8 +10,9 @@ import numpy as np
 
 from runtime.program import Kind
 from runtime.recording.tracks import Quantity
-from runtime.run import Run, run
+from runtime.run import Run, Seen, run
 from runtime.scenario import Scenario
+from runtime.scheduler.observer import Observer
 from runtime.user_code import UserCodeError
 from runtime.world.layout import NoRoomError
 from spec_schema.diagnostics import SpecError
@@ -49,6 +50,8 @@ def simulate_scenario(
     allow_code: bool = False,
     light_every: float | None = None,
     progress: Progress | None = None,
+    observer: Observer | None = None,
+    seen: Seen | None = None,
 ) -> Simulation:
     """Run a scenario, and judge the run by its requirements.
 
@@ -58,6 +61,7 @@ def simulate_scenario(
         allow_code: whether Python that the scenario names may be run.
         light_every: seconds between two pictures of the light on the floor; None for none.
         progress: is told what is done, how much of it, and of how much.
+        observer, seen: are told everything as it happens, and where all are; see `run`.
 
     Raises:
         SpecError: the spec is wrong, there is no room (V381), or code of the user's own may not
@@ -74,6 +78,8 @@ def simulate_scenario(
             scenario,
             allow_code=allow_code,
             light_every=light_every,
+            observer=observer,
+            seen=seen,
             progress=lambda done, of: tell("running", done, of),
         )
     except NoRoomError as error:

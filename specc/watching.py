@@ -1,7 +1,7 @@
 """A run that is looked at while it is computed: what `specc simulate --watch` shows."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import final
 
 import numpy as np
@@ -12,41 +12,63 @@ from runtime.scenario import Scenario
 from runtime.scheduler.environment import Delivery
 from runtime.scheduler.observer import Event, Tick
 from runtime.world.layout import lay_out
+from specc.figures.eyes import Glimpse, glimpses
 from specc.figures.live import Show, live_view
-from specc.figures.scene import NOBODY
-from specc.pictured import scene_of, winner
+from specc.figures.live_lines import live_lines
+from specc.figures.live_window import live_window, open_window
+from specc.figures.scene import NOBODY, Scene
+from specc.figures.style_names import Style
+from specc.pictured import drawn_sensors, said_now, scene_of, winner
 
 
 @final
 class Onlooker:
-    """Shows a run: an `Observer` of who acts; its `seen` is told where all are."""
+    """Shows a run: an `Observer` of who acts and senses; its `seen` is told where all are.
 
-    def __init__(self, scenario: Scenario, things: int, doers: list[list[str]], show: Show) -> None:
-        """doers: for each robot what has acted; it grows."""
+    Attributes:
+        doers: for each robot what has acted up to now.
+        glimpses: for each robot what its eyes say; None of one that has said nothing yet.
+    """
+
+    def __init__(self, scenario: Scenario, things: int) -> None:
         self._robots, self._things = scenario.robots, things
-        self._doers, self._show = doers, show
+        self._eyes = [drawn_sensors(robot) for robot in scenario.robots]
+        self._show: Show | None = None
+        self.doers: list[list[str]] = [[] for _ in scenario.robots]
+        self.glimpses: list[list[Glimpse | None]] = [[None] * len(eyes) for eyes in self._eyes]
         self._acting = np.full(len(scenario.robots), NOBODY, dtype=np.int64)
+
+    def shows_on(self, show: Show) -> None:
+        """Where everything is shown from now on."""
+        self._show = show
 
     def seen(self, time: float, poses: Array) -> None:
         """Show where all are now."""
-        self._show(time, poses[: self._things], poses[self._things :], self._acting)
+        if self._show is not None:
+            acting = self._acting.copy()
+            self._show(time, poses[: self._things], poses[self._things :], acting)
 
     def acting(
         self,
         instant: int,  # noqa: ARG002  the protocol has it
         robot: int,
         acts: Booleans,
-        weights: Array,  # noqa: ARG002  the protocol has it
+        weights: Array,
     ) -> None:
         """Remember who has its way."""
-        name = winner(self._robots[robot].architecture, acts)
-        known = self._doers[robot]
+        name = winner(self._robots[robot].architecture, acts, weights)
+        known = self.doers[robot]
         if name and name not in known:
             known.append(name)
         self._acting[robot] = known.index(name) if name else NOBODY
 
-    def sensed(self, instant: int, delivery: Delivery) -> None:
-        """Nothing is shown of it."""
+    def sensed(self, instant: int, delivery: Delivery) -> None:  # noqa: ARG002  the protocol has it
+        """Remember what an eye says."""
+        sensor = self._robots[delivery.robot].body.sensors[delivery.sensor]
+        eyes = self._eyes[delivery.robot]
+        if sensor in eyes:
+            (glimpse,) = glimpses((said_now(sensor, delivery.readings),), 0.0)
+            self.glimpses[delivery.robot][eyes.index(sensor)] = glimpse
 
     def ticked(self, instant: int, tick: Tick) -> None:
         """Nothing is shown of it."""
@@ -60,10 +82,15 @@ class Onlooker:
 
 @contextmanager
 def watching(
-    scenario: Scenario, console: Console, *, speed: float | None = 1.0
+    scenario: Scenario,
+    console: Console,
+    *,
+    speed: float | None = 1.0,
+    style: Style = Style.SCREEN,
 ) -> Iterator[Onlooker]:
     """A live view of a run: `run(scenario, observer=it, seen=it.seen)`.
 
+    In a window where there is a display, else in the terminal; as lines where the console is none.
     speed: seconds of the run in one on the wall, at most; None: as fast as it is computed. Ctrl-C
     leaves the terminal as it was, and goes on as KeyboardInterrupt.
 
@@ -72,6 +99,37 @@ def watching(
     """
     robots = [(robot.name, robot.body, robot.start.pose) for robot in scenario.robots]
     things = lay_out(scenario.world, robots, scenario.seed).things
-    doers: list[list[str]] = [[] for _ in scenario.robots]
-    with live_view(scene_of(scenario, things), doers, console, speed=speed) as show:
-        yield Onlooker(scenario, len(things), doers, show)
+    onlooker = Onlooker(scenario, len(things))
+    with ExitStack() as stack:
+        scene = scene_of(scenario, things)
+        onlooker.shows_on(_shown(stack, scene, onlooker, scenario, console, speed, style))
+        yield onlooker
+
+
+def _shown(
+    stack: ExitStack,
+    scene: Scene,
+    onlooker: Onlooker,
+    scenario: Scenario,
+    console: Console,
+    speed: float | None,
+    style: Style,
+) -> Show:
+    """Where the run is shown: the first of a window, a terminal, and lines that is there."""
+    window = _in_window(stack, scene, onlooker, speed, style)
+    if window is not None:
+        return window
+    doers = onlooker.doers
+    if console.is_interactive:
+        return stack.enter_context(live_view(scene, doers, console, speed=speed))
+    return stack.enter_context(live_lines(scene, doers, console, duration=scenario.duration))
+
+
+def _in_window(
+    stack: ExitStack, scene: Scene, onlooker: Onlooker, speed: float | None, style: Style
+) -> Show | None:
+    window = open_window(scene.title)
+    if window is None:
+        return None
+    view = live_window(window, scene, onlooker.doers, onlooker.glimpses, speed=speed, style=style)
+    return stack.enter_context(view)

@@ -128,3 +128,15 @@ class Happening:
     robot: str
     what: str
     where: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A robot began to touch something at (x, y): a thing, another robot, or `walls`."""
+
+    time: float
+    robot: str
+    what: str
+    x: float
+    y: float

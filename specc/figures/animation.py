@@ -1,54 +1,41 @@
-"""Runs as films: GIF by Pillow, MP4 where ffmpeg is there.
-
-What stands still is drawn once; each frame draws only what moves, on a copy of that.
-"""
+"""Runs as films: GIF by Pillow, MP4 where ffmpeg is there."""
 
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Final, TypeAlias, final
+from typing import Final, TypeAlias
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from matplotlib.image import AxesImage
 from PIL import Image
 
 from runtime.arrays import Array, Integers
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
-from specc.figures.legend import Entry, draw_legend, line_entry
 from specc.figures.palettes import PALETTES, Palette
-from specc.figures.paper import axes_at, new_figure
 from specc.figures.scene import NOBODY, Scene, Trails
+from specc.figures.stage import TAIL, Stage, moment_of
 from specc.figures.style import look
 from specc.figures.style_names import Style
 from specc.figures.trails import DOERS, look_of, names_of
-from specc.figures.world import LAMP, bounds, floor, light_image, outline, patch, placed
+from specc.figures.world import LAMP
 from specc.files import unknown_suffix, write_atomically
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 
 RATE: Final = 12.0
-"""Frames per second of the run's time."""
-DPI: Final = 80
-LONG: Final = 6.4
-"""Inches of the longer side of the floor."""
-HEAD: Final = 0.45
-LEGEND: Final = 1.6
-MARGIN: Final = 0.12
-TAIL: Final = 8.0
-"""Seconds of way that a robot draws behind it."""
+"""Frames per second."""
+LONGEST: Final = 30.0
+"""Seconds of a film, where no speed is asked for."""
+SPEEDS: Final = (1.0, 2.0, 4.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
+MOST: Final = 4.0
+"""Times as long as in a film at the run's own speed are ways, at most."""
 COLORS: Final = 128
 """Of a GIF."""
-CORNERS: Final = 20
 
 
 def animate(
@@ -58,21 +45,35 @@ def animate(
     progress: Progress | None = None,
     *,
     style: Style = Style.SCREEN,
+    speed: float | None = None,
     rate: float = RATE,
 ) -> None:
-    """Write a run as .gif or .mp4, at the speed of its time; whole or not at all.
+    """Write a run as .gif or .mp4; whole or not at all.
+
+    speed: seconds of the run in one of the film; None: so many that it is not too long.
 
     Raises:
         SpecError: another suffix, .mp4 without ffmpeg, or a file that can't be written.
     """
     require_film(path)
     tell = progress or _in_silence
-    film = frames(scene, trails, style, rate, tell)
+    fast = speed or speed_for(float(trails.times[-1] - trails.times[0]))
+    film = frames(scene, trails, style, (rate, fast), tell)
     if path.suffix.lower() == ".gif":
-        data = _gif(film, len(frame_rows(trails.times, rate)), rate, PALETTES[style])
+        count = len(frame_rows(trails.times, rate / fast))
+        data = _gif(film, count, rate, PALETTES[style])
     else:
-        data = _mp4(film, rate)
+        data = _mp4(film, path, rate)
     write_atomically(path, data)
+
+
+def speed_for(duration: float) -> float:
+    """The least of the usual speeds by which a film of a run is not too long.
+
+    >>> speed_for(12.0), speed_for(120.0), speed_for(600.0)
+    (1.0, 4.0, 20.0)
+    """
+    return next((speed for speed in SPEEDS if duration / speed <= LONGEST), SPEEDS[-1])
 
 
 def require_film(path: Path) -> None:
@@ -88,16 +89,20 @@ def require_film(path: Path) -> None:
 
 
 def frames(
-    scene: Scene, trails: Trails, style: Style, rate: float, tell: Progress
+    scene: Scene, trails: Trails, style: Style, pace: tuple[float, float], tell: Progress
 ) -> Iterator[Image.Image]:
-    """The pictures of a film, one after the other, all of one size."""
-    rows = frame_rows(trails.times, rate)
+    """The pictures of a film, one after the other, all of one size.
+
+    pace: frames per second, and seconds of the run in a second.
+    """
+    rate, speed = pace
+    rows = frame_rows(trails.times, rate / speed)
     with look(PALETTES[style]):
-        stage = _Stage(scene, trails, PALETTES[style])
+        stage = Stage(scene, trails.doers, PALETTES[style], names_of(trails), speed=speed)
         for done, row in enumerate(rows.tolist()):
-            tell("drawing", done, len(rows))
-            yield stage.at(row)
-    tell("drawing", len(rows), len(rows))
+            tell("drawing the film", done, len(rows))
+            yield stage.at(moment_of(trails, row, TAIL * min(speed, MOST)))
+    tell("drawing the film", len(rows), len(rows))
 
 
 def frame_rows(times: Array, rate: float) -> Integers:
@@ -106,174 +111,6 @@ def frame_rows(times: Array, rate: float) -> Integers:
     wanted = times[0] + np.arange(count) / rate
     rows: Integers = np.searchsorted(times, wanted + 1e-9, side="right").astype(np.int64) - 1
     return rows
-
-
-@final
-class _Stage:
-    """What stands still, drawn once, and the parts that are moved for each frame."""
-
-    def __init__(self, scene: Scene, trails: Trails, palette: Palette) -> None:
-        self._scene, self._trails, self._palette = scene, trails, palette
-        self._names, self._glow = names_of(trails), scene.glow
-        figure, self._axes, self._image = _set(scene, trails, palette)
-        self._canvas = _canvas(figure)
-        self._things = [outline(item.shape, CORNERS) for item in scene.things]
-        self._robots = [outline(item.shape, CORNERS) for item in scene.robots]
-        self._loose = [i for i, item in enumerate(scene.things) if not item.is_fixed]
-        self._moving = self._movers(figure)
-        self._figure, self._lit = figure, -1
-        self._relight(0)
-
-    def at(self, row: int) -> Image.Image:
-        """The frame of one sample."""
-        self._move(row)
-        if self._glow is not None:
-            self._relight(self._glow.at(float(self._trails.times[row])))
-        self._canvas.restore_region(self._still)
-        for artist in self._moving:
-            artist.draw(self._canvas.get_renderer())
-        return Image.fromarray(np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy())
-
-    def _relight(self, lit: int) -> None:
-        """Draw all that stands still, where the light is another than before."""
-        if lit == self._lit:
-            return
-        self._lit = lit
-        if self._glow is not None and self._image is not None:
-            self._image.set_data(self._glow.lux[lit])
-        self._canvas.draw()
-        self._still = self._canvas.copy_from_bbox(self._figure.bbox)
-
-    def _movers(self, figure: Figure) -> list[Artist]:
-        palette = self._palette
-        self._pushed = PolyCollection([], fc=palette.tints[5], ec=palette.ink, lw=0.8, zorder=3)
-        self._ways = LineCollection([], linewidths=2.2, zorder=4)
-        self._bodies = PolyCollection([], ec=palette.ink, lw=1.0, zorder=5)
-        self._noses = LineCollection([], colors=palette.paper, linewidths=1.6, zorder=6)
-        movers: list[Artist] = [self._pushed, self._ways, self._bodies, self._noses]
-        for collection in (self._pushed, self._ways, self._bodies, self._noses):
-            self._axes.add_collection(collection, autolim=False)
-        (self._lamps,) = self._axes.plot(
-            [], [], "*", ms=13.0, mfc=LAMP, mec=palette.ink, mew=0.8, zorder=8
-        )
-        width, height = figure.get_size_inches()
-        self._clock = figure.text(
-            1.0 - MARGIN / width, 1.0 - 0.1 / height, "", fontsize=11, ha="right", va="top"
-        )
-        movers += [self._lamps, self._clock]
-        for artist in movers:
-            artist.set_animated(True)
-        return movers
-
-    def _move(self, row: int) -> None:
-        trails = self._trails
-        poses = trails.things[row]
-        self._pushed.set_verts(
-            [placed(part, poses[i]) for i in self._loose for part in self._things[i]]
-        )
-        self._bodies.set_verts(
-            [
-                placed(p, trails.robots[row, i])
-                for i, parts in enumerate(self._robots)
-                for p in parts
-            ]
-        )
-        self._bodies.set_facecolor(
-            [self._color(i, row) for i, parts in enumerate(self._robots) for _ in parts]
-        )
-        self._noses.set_segments(
-            [
-                placed(np.array([[0.0, 0.0], [_reach(parts), 0.0]]), trails.robots[row, i])
-                for i, parts in enumerate(self._robots)
-            ]
-        )
-        self._draw_ways(row)
-        self._lamps.set_data(*np.array(_lamps(self._scene, poses)).reshape(-1, 2).T)
-        self._clock.set_text(f"{trails.times[row]:.1f} s")
-
-    def _draw_ways(self, row: int) -> None:
-        """The last seconds of each robot's way, a piece for each frame, by who acted."""
-        trails = self._trails
-        first = int(np.searchsorted(trails.times, trails.times[row] - TAIL))
-        step = max((row - first) // 80, 1)
-        marks = np.append(np.arange(first, row, step), row)
-        segments, colors = [], []
-        for robot in range(len(self._robots)):
-            points = trails.robots[marks, robot, :2]
-            segments += list(np.stack([points[:-1], points[1:]], axis=1))
-            colors += [self._color(robot, mark) for mark in marks[:-1].tolist()]
-        self._ways.set_segments(segments)
-        self._ways.set_color(colors or ["none"])
-
-    def _color(self, robot: int, row: int) -> str:
-        doer = int(self._trails.acting[row, robot])
-        place = NOBODY if doer == NOBODY else self._names.index(self._trails.doers[robot][doer])
-        return str(look_of(place, self._palette)["color"])
-
-
-def _set(scene: Scene, trails: Trails, palette: Palette) -> tuple[Figure, Axes, AxesImage | None]:
-    """The figure with all that stands still, and the light on its floor."""
-    left, low, right, high = bounds(scene)
-    scale = LONG / max(right - left, high - low)
-    size = (scale * (right - left), scale * (high - low))
-    width = even(MARGIN * 2 + size[0] + LEGEND)
-    height = even(MARGIN + max(size[1], 1.2) + HEAD)
-    figure = new_figure(width, height, palette)
-    figure.set_dpi(DPI)
-    axes = axes_at(figure, (MARGIN, MARGIN), size)
-    floor(axes, scene)
-    axes.set_xticks([])
-    axes.set_yticks([])
-    shown = None
-    if scene.glow is not None:
-        shown = light_image(axes, scene.glow, palette)
-        shown.set_clip_path(patch([scene.arena]).get_path(), axes.transData)
-    for index, item in enumerate(scene.things):
-        if item.is_fixed:
-            parts = [placed(part, trails.things[0, index]) for part in outline(item.shape)]
-            axes.add_patch(patch(parts, fc=palette.faint, ec=palette.ink, lw=0.8, zorder=2))
-    title = scene.title.replace("_", " ")
-    figure.text(MARGIN / width, 1.0 - 0.1 / height, title, fontsize=12, fontweight="bold", va="top")
-    corner = ((MARGIN + size[0] + 0.12) / width, (MARGIN + size[1]) / height)
-    draw_legend(figure, _entries(trails, palette), corner)
-    return figure, axes, shown
-
-
-def _canvas(figure: Figure) -> Any:
-    """What a figure is drawn on; its methods have no types."""
-    return FigureCanvasAgg(figure)
-
-
-def even(inches: float) -> float:
-    """A length that is an even number of pixels, as coders of films want it.
-
-    >>> even(1.0), even(1.001) * 80
-    (1.0, 82.0)
-    """
-    return 2 * int(np.ceil(0.5 * inches * DPI - 1e-9)) / DPI
-
-
-def _entries(trails: Trails, palette: Palette) -> list[Entry]:
-    """What each colour of a robot and its way means."""
-    places: Iterable[tuple[int, str]] = enumerate(names_of(trails))
-    drawn = [(place, f"{name} acts") for place, name in places]
-    drawn += [(NOBODY, "nobody acts")] if (trails.acting == NOBODY).any() else []
-    return [
-        line_entry(label, color=look_of(place, palette)["color"], linewidth=2.6)
-        for place, label in drawn
-    ]
-
-
-def _reach(parts: list[Array]) -> float:
-    return max(float(np.hypot(part[:, 0], part[:, 1]).max()) for part in parts)
-
-
-def _lamps(scene: Scene, poses: Array) -> list[Array]:
-    """Where lights are."""
-    return [
-        placed(np.array([[lamp.x, lamp.y]]), poses[lamp.on] if lamp.on >= 0 else np.zeros(3))[0]
-        for lamp in scene.lamps
-    ]
 
 
 def _gif(film: Iterator[Image.Image], count: int, rate: float, palette: Palette) -> bytes:
@@ -301,30 +138,31 @@ def _table(first: Image.Image, palette: Palette) -> Image.Image:
     return table
 
 
-def _mp4(film: Iterator[Image.Image], rate: float) -> bytes:
+def _mp4(film: Iterator[Image.Image], path: Path, rate: float) -> bytes:
     """The frames through ffmpeg."""
     program = shutil.which("ffmpeg")
     if program is None:
-        raise _no_ffmpeg(Path("film.mp4"))
+        raise _no_ffmpeg(path)
     first = next(film)
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "film.mp4"
+        made = Path(folder) / "film.mp4"
         size = f"{first.width}x{first.height}"
         told = [
             program, "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size,
             "-r", f"{rate:g}", "-i", "-", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
-            str(path),
+            str(made),
         ]  # fmt: skip
         with subprocess.Popen(told, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as coder:  # noqa: S603  a fixed program with our own arguments
             assert coder.stdin is not None
-            coder.stdin.write(first.tobytes())
-            for frame in film:
-                coder.stdin.write(frame.tobytes())
+            with suppress(BrokenPipeError):  # it has ended already, and says why
+                coder.stdin.write(first.tobytes())
+                for frame in film:
+                    coder.stdin.write(frame.tobytes())
             _, said = coder.communicate()
         if coder.returncode:
             why = said.decode(errors="replace").strip().splitlines()
             raise fault("V347", path.name, f"ffmpeg failed: {why[-1] if why else 'no reason'}")
-        return path.read_bytes()
+        return made.read_bytes()
 
 
 def _no_ffmpeg(path: Path) -> SpecError:

@@ -15,6 +15,7 @@ from rich.text import Text
 
 from runtime.arrays import Array, Integers
 from specc.figures.braille import Canvas
+from specc.figures.pace import RATE, Pace
 from specc.figures.quantities import number
 from specc.figures.scene import NOBODY, Scene, Trails
 from specc.figures.world import bounds, outline, placed
@@ -22,8 +23,6 @@ from specc.figures.world import bounds, outline, placed
 Show: TypeAlias = Callable[[float, Array, Array, Integers], None]
 """Is told a time, poses of things (t, 3) and of robots (r, 3), and who acts (r,)."""
 
-RATE: Final = 12.0
-"""Pictures per second of a clock on the wall."""
 TAIL: Final = 10.0
 """Seconds of way that robots draw behind them."""
 SIDE: Final = 24
@@ -143,25 +142,19 @@ def live_view(
     afterwards, also after an exception such as Ctrl-C.
     """
     view = View(scene, doers, console)
-    first = shown = math.nan
     last: tuple[float, Array, Array, Integers] | None = None
-    began = clock()
+    pace = Pace(speed, clock, sleep)
     with Live(
         console=console, auto_refresh=False, redirect_stdout=False, redirect_stderr=False
     ) as live:
 
         def show(now: float, things: Array, robots: Array, acting: Integers) -> None:
-            nonlocal first, shown, last
-            if math.isnan(first):
-                first = now
-            if speed is not None:
-                wait = began + (now - first) / speed - clock()
-                if wait > 0.0:
-                    sleep(wait)
+            nonlocal last
+            pace.wait(now)
             last = (now, things, robots, acting)
-            if not shown > clock() - 1.0 / RATE:
+            if pace.is_due():
                 live.update(view.at(*last), refresh=True)
-                shown = clock()
+                pace.shown()
 
         yield show
         if last is not None:

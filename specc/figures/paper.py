@@ -55,7 +55,7 @@ def heading(
     names: of states and controls; a sentence that begins with one is not made to begin large.
     """
     small = [_begun(line, names) for line in below]
-    return Heading(_spaced(title), _wrapped(above, width), _wrapped(small, width))
+    return Heading(spaced(title), _wrapped(above, width), _wrapped(small, width))
 
 
 def _begun(line: str, names: Collection[str]) -> str:
@@ -114,7 +114,8 @@ def panel_size(
     return scale * x.width, scale * y.width
 
 
-def _spaced(name: str) -> str:
+def spaced(name: str) -> str:
+    """A name as a title: `first_light` is `First light`; that of a file stays."""
     if "." in name.split(maxsplit=1)[0]:
         return name  # a file
     words = name.replace("_", " ")

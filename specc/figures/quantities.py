@@ -50,6 +50,16 @@ def seconds(value: float) -> str:
     return f"{minutes} min {rest} s" if rest else f"{minutes} min"
 
 
+def degrees(angle: float) -> str:
+    """A direction in whole degrees, from −179 to 180.
+
+    >>> degrees(math.pi), degrees(-math.pi / 2.0), degrees(7.0)
+    ('180°', '−90°', '41°')
+    """
+    turned = round(math.degrees(angle)) % 360
+    return f"{_minus(str(turned - 360 if turned > 180 else turned))}°"
+
+
 def percent(share: float) -> str:
     """A share of one as a whole percentage; never rounded up to all of it."""
     return f"{math.floor(100.0 * share + 1e-9)} %"

@@ -1,15 +1,38 @@
 """What pictures of a run are drawn from: plain arrays, so that they depend on nothing that runs."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Final, final
 
 import numpy as np
 
-from runtime.arrays import Array, Integers
+from runtime.arrays import Array, Booleans, Integers
 from runtime.world.model import Shape
 
 NOBODY: Final = -1
 """In `Trails.acting`: none of the robot's behaviors acts."""
+
+
+@final
+class EyeKind(StrEnum):
+    """What of a sensor can be drawn: how far it is free, what it sees, whether it is hit."""
+
+    RANGE = "range"
+    SIGHT = "sight"
+    BUMP = "bump"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Eye:
+    """A sensor of a robot: where on it, where it looks, over which angle, and how far."""
+
+    kind: EyeKind
+    x: float
+    y: float
+    heading: float
+    width: float
+    reach: float
 
 
 @final
@@ -20,6 +43,7 @@ class Item:
     name: str
     shape: Shape
     is_fixed: bool = False
+    eyes: tuple[Eye, ...] = ()
 
 
 @final
@@ -60,12 +84,16 @@ class Scene:
     lamps: tuple[Lamp, ...] = ()
     glow: Glow | None = None
     about: str = ""
+    seed: int | None = None
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that happened at a place: a robot touched something, or was stuck until `end`."""
+    """Something that happened at a place: a robot touched something, or was stuck until `end`.
+
+    Of a touch the place is where it touched; of a jam it is where the robot was.
+    """
 
     robot: int
     time: float
@@ -86,6 +114,25 @@ class Outcome:
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
+class Said:
+    """What an eye said at times (k,), increasing: (k,) each.
+
+    seen: something is within reach, in view, or hits. distance, bearing: where, from the eye; of
+    a range the bearing is where it looks.
+    """
+
+    times: Array
+    seen: Booleans
+    distance: Array
+    bearing: Array
+
+    def at(self, time: float) -> int:
+        """Which of the times is the last one up to `time`; -1 before all."""
+        return int(np.searchsorted(self.times, time + 1e-9, side="right")) - 1
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
 class Trails:
     """Where everything was.
 
@@ -97,6 +144,7 @@ class Trails:
         acting: (n, r) an index into the robot's doers, or NOBODY.
         contacts, jams: where they began.
         outcomes: of the requirements.
+        said: for each robot what its eyes said, in their order; empty where nothing is known.
     """
 
     times: Array
@@ -107,3 +155,4 @@ class Trails:
     contacts: tuple[Mark, ...] = ()
     jams: tuple[Mark, ...] = ()
     outcomes: tuple[Outcome, ...] = ()
+    said: tuple[tuple[Said, ...], ...] = ()

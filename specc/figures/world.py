@@ -130,6 +130,20 @@ def moved(poses: Array) -> bool:
     return bool((off > MOVED).any())
 
 
+def reach_of(parts: Sequence[Array]) -> float:
+    """How far a footprint reaches from its origin."""
+    return max(float(np.hypot(part[:, 0], part[:, 1]).max()) for part in parts)
+
+
+def lamps_at(scene: Scene, things: Array) -> Array:
+    """Where lights are (k, 2), the things being at poses (t, 3)."""
+    at = [
+        placed(np.array([[lamp.x, lamp.y]]), things[lamp.on] if lamp.on >= 0 else np.zeros(3))[0]
+        for lamp in scene.lamps
+    ]
+    return np.array(at).reshape(-1, 2)
+
+
 def _things(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[Entry]:
     """Things at their end; those that were pushed also at their start, faint, and their way."""
     fixed: list[Patch] = []
@@ -175,7 +189,7 @@ def _robots(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
     """Robots at their start, faint, and at their end, with where they look and their names."""
     for index, item in enumerate(scene.robots):
         parts = outline(item.shape)
-        reach = max(float(np.hypot(p[:, 0], p[:, 1]).max()) for p in parts)
+        reach = reach_of(parts)
         for row, alpha in ((0, 0.35), (-1, 1.0)):
             pose = trails.robots[row, index]
             axes.add_patch(
@@ -206,10 +220,7 @@ def _lamps(axes: Axes, scene: Scene, things: Array, palette: Palette) -> list[En
         "marker": "*", "linestyle": "None", "ms": 13.0, "mfc": LAMP, "mec": palette.ink,
         "mew": 0.8, "zorder": 8,
     }  # fmt: skip
-    for lamp in scene.lamps:
-        at = np.array([[lamp.x, lamp.y]])
-        point = placed(at, things[lamp.on])[0] if lamp.on >= 0 else at[0]
-        axes.plot(*point, **drawn)
+    axes.plot(*lamps_at(scene, things).T, **drawn)
     return [line_entry("light", **{**drawn, "ms": 9.0})] if scene.lamps else []
 
 

@@ -16,18 +16,16 @@ from verifier.report.wording import number, percent, seconds
 MILLIMETRES: Final = 1e3
 
 
-def simulation_text(made: Simulation, took: float) -> str:
+def simulation_text(made: Simulation, took: float | None) -> str:
     """What was required, what each robot did, and what should not pass in silence.
 
-    took: seconds of the computer.
+    took: seconds of the computer; None where somebody watched, at a speed of their own.
     """
     run = made.run
     scenario = run.scenario
-    factor = run.duration / max(took, 1e-9)
-    head = (
-        f"{scenario.name}: {seconds(run.duration)} simulated, seed {scenario.seed} "
-        f"({number(factor)} times as fast as real time)"
-    )
+    head = f"{scenario.name}: {seconds(run.duration)} simulated, seed {scenario.seed}"
+    if took is not None:
+        head += f" ({number(run.duration / max(took, 1e-9))} times as fast as real time)"
     blocks = [head]
     if made.requirements:
         blocks.append(requirements_text(made.requirements))
@@ -38,7 +36,7 @@ def simulation_text(made: Simulation, took: float) -> str:
     return "\n\n".join(blocks)
 
 
-def simulation_record(made: Simulation, took: float) -> dict[str, object]:
+def simulation_record(made: Simulation, took: float | None) -> dict[str, object]:
     """The same for programs, in SI; `took` is the only thing that differs between two runs."""
     run = made.run
     return {
@@ -47,7 +45,7 @@ def simulation_record(made: Simulation, took: float) -> dict[str, object]:
         "duration": run.duration,
         "step": run.scenario.step,
         "took": took,
-        "real_time_factor": run.duration / max(took, 1e-9),
+        "real_time_factor": None if took is None else run.duration / max(took, 1e-9),
         "outcome": str(made.outcome),
         "requirements": requirements_record(made.requirements),
         "robots": {

@@ -7,7 +7,8 @@ import pytest
 from PIL import Image
 
 from spec_schema.diagnostics import SpecError
-from specc.figures.animation import animate, even, frame_rows
+from specc.figures.animation import animate, frame_rows
+from specc.figures.stage import even
 from specc.figures.style_names import Style
 from specc.figures.trails import DOERS
 from tests.specc.world_scenes import scene, trails
@@ -36,7 +37,7 @@ def test_a_film_lasts_as_long_as_its_run(tmp_path: Path, *, lit: bool) -> None:
             film.seek(frame)
             lasted += film.info["duration"]
         assert lasted == pytest.approx(3083.0, abs=10.0)  # 37 frames, in hundredths of a second
-    assert told[-1] == ("drawing", 37, 37)
+    assert told[-1] == ("drawing the film", 37, 37)
 
 
 def test_robots_have_the_colour_of_what_acts(tmp_path: Path) -> None:
