@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from specc.simulating import simulate_scenario as simulate_scenario
     from specc.verifying import Verification as Verification
     from specc.verifying import verify as verify
+    from specc.verifying_recording import RunVerification as RunVerification
+    from specc.verifying_recording import verify_run as verify_run
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
     from verifier.topology.branches.continuation import Branches as Branches
@@ -66,6 +68,8 @@ HOMES = {
     "simulate_scenario": "specc.simulating",
     "record_run": "specc.recorded",
     "verify": "specc.verifying",
+    "verify_run": "specc.verifying_recording",
+    "RunVerification": "specc.verifying_recording",
     "fit": "specc.fitting.fit",
     "Fitted": "specc.fitting.fitted",
     "write_artifact": "specc.loading",

@@ -10,10 +10,21 @@ from specc import __version__
 from specc.files import json_bytes, unknown_suffix, write_atomically
 from specc.pages.report_page import report_page
 from specc.pages.runs_page import runs_page
-from specc.runs import Outcome, Runs, Unusable, runs_of, source_of, unusable, verifications
-from specc.runs_record import run_record, runs_record
+from specc.runs import (
+    Outcome,
+    Runs,
+    Unusable,
+    not_judged,
+    runs_of,
+    source_of,
+    unusable,
+    verifications,
+)
+from specc.runs_record import record_of
 from specc.texts.runs import runs_text
 from specc.verifying import Verification
+from specc.verifying_architecture import NotJudged
+from specc.verifying_recording import RunVerification
 from verifier.report.examination_text import examination_text
 from verifier.report.findings import Finding, Level, Rule, findings_of
 from verifier.report.junit import as_junit
@@ -25,31 +36,26 @@ OPEN: Final = {Rule.UNDECIDED, Rule.COVERAGE, Rule.INCONCLUSIVE}
 """What more recordings may decide."""
 
 
-def write_report(verification: Verification, path: Path | str) -> None:
+def write_report(verification: Verification | RunVerification, path: Path | str) -> None:
     """Write a verdict as .html, .json, .txt, .xml (JUnit) or .sarif."""
-    path = Path(path)
-    match path.suffix.lower():
-        case ".html":
-            write_atomically(path, report_page(verification.examination).encode())
-        case ".json":
-            write_atomically(path, json_bytes(run_record(verification)))
-        case ".txt":
-            write_atomically(path, examination_text(verification.examination).encode())
-        case _:
-            write_reports([verification], path)
+    if isinstance(verification, RunVerification):
+        write_reports([*verification.judged, *verification.not_judged], path)
+    else:
+        write_reports([verification], path)
 
 
 def write_reports(outcomes: Sequence[Outcome] | Runs, path: Path | str) -> None:
     """Write the verdicts on many recordings, each and together, as one file of the same kinds."""
     path = Path(path)
     runs = outcomes if isinstance(outcomes, Runs) else runs_of(outcomes)
+    one = runs.only
     match path.suffix.lower():
         case ".html":
-            data = runs_page(runs).encode()
+            data = (runs_page(runs) if one is None else report_page(one.examination)).encode()
         case ".json":
-            data = json_bytes(runs_record(runs))
+            data = json_bytes(record_of(runs))
         case ".txt":
-            data = runs_text(runs).encode()
+            data = (runs_text(runs) if one is None else examination_text(one.examination)).encode()
         case ".xml":
             data = _junit(runs)
         case ".sarif":
@@ -63,8 +69,9 @@ def _junit(runs: Runs) -> bytes:
     judged = verifications(runs.outcomes)
     made = [*(p.examination for p in runs.pools), *(each.examination for each in judged)]
     parts = frozenset(each.examination for each in runs.members)
+    skipped = [(each.source, each.why) for each in not_judged(runs.outcomes)]
     broken = [(each.source, render(each.error.diagnostics)) for each in unusable(runs.outcomes)]
-    return as_junit(made, broken, parts)
+    return as_junit(made, broken, parts, skipped)
 
 
 def findings_by_source(runs: Runs) -> list[tuple[str, tuple[Finding, ...]]]:
@@ -94,4 +101,6 @@ def findings_in(outcome: Outcome) -> tuple[Finding, ...]:
             Finding(Rule.UNUSABLE, Level.ERROR, each.code, each.message, each.place)
             for each in outcome.error.diagnostics
         )
+    if isinstance(outcome, NotJudged):
+        return (Finding(Rule.NOT_JUDGED, Level.NOTE, "node", outcome.why, ""),)
     return findings_of(outcome.examination)

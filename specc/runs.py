@@ -1,21 +1,22 @@
 """Many recordings judged in one call: an outcome for each, and a verdict on all together."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
-from typing import Final, TypeAlias, final
+from typing import TypeAlias, final
 
 from runtime.program import Program
 from spec_schema.diagnostics import SpecError
+from specc.run_standard import carried_by, is_of_runs
 from specc.verifying import Clock, Verification, program_for_verify, verify_by
-from specc.verifying_recording import attached_architectures, verify_recording
+from specc.verifying_architecture import NotJudged
+from specc.verifying_recording import REQUIREMENTS, verify_carried
 from verifier.fidelity.together import pooled
 from verifier.report.examination import Examination
-from verifier.report.report import Report, Verdict
+from verifier.report.report import WORST_FIRST, Report, Verdict
+from verifier.report.wording import listed
 from verifier.traces.files.log import Progress
-
-WORST_FIRST: Final = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
 
 
 @final
@@ -27,12 +28,12 @@ class Unusable:
     error: SpecError
 
 
-Outcome: TypeAlias = Verification | Unusable
+Outcome: TypeAlias = Verification | NotJudged | Unusable
 
 
 def source_of(outcome: Outcome) -> str:
-    """The recording that it is about."""
-    return outcome.source if isinstance(outcome, Unusable) else outcome.report.trace.source
+    """The recording that it is about, and which part of it."""
+    return outcome.report.trace.source if isinstance(outcome, Verification) else outcome.source
 
 
 def verify_each(
@@ -40,6 +41,7 @@ def verify_each(
     spec: Path | str | Program | None = None,
     clock: Clock = "auto",
     *,
+    allow_code: bool = False,
     strict: bool = False,
     only_verdict: bool = False,
     progress: Callable[[str, str], None] | None = None,
@@ -48,9 +50,10 @@ def verify_each(
     """Judge recordings one after the other, each like `verify`; a spec is compiled only once.
 
     One that can't be used does not stop the others. The recording of a scenario has an outcome
-    for each node of each robot.
+    for what it requires, and for each node of each robot.
 
     Args:
+        allow_code: whether arbiters that are code of the user's own may be run.
         strict: any loss in a log is an error.
         only_verdict: leave out what explains the verdicts.
         progress: is told which recording it is, and what is done next.
@@ -59,28 +62,39 @@ def verify_each(
     Raises:
         SpecError: the spec that was named can't be used.
     """
-    program_of = cache(program_for_verify)
-    if spec is not None and not isinstance(spec, Program):
-        program_of(Path(spec))
+    program_of = cache(partial(program_for_verify, allow_code=allow_code))
+    named = spec if spec is None or isinstance(spec, Program) else Path(spec)
+    if isinstance(named, Path) and not is_of_runs(named):
+        program_of(named)
     for trace in traces:
         tell = None if progress is None else partial(progress, str(trace))
         try:
-            attached = attached_architectures(Path(trace)) if spec is None else {}
-            if attached:
-                yield from verify_recording(
-                    Path(trace), attached, only_verdict=only_verdict, progress=tell
+            carried = carried_by(Path(trace))
+            if carried is None:
+                yield verify_by(
+                    Path(trace),
+                    spec,
+                    clock,
+                    program_of,
+                    strict=strict,
+                    only_verdict=only_verdict,
+                    progress=tell,
+                    reading=reading,
                 )
                 continue
-            yield verify_by(
+            run = verify_carried(
                 Path(trace),
-                spec,
-                clock,
+                carried,
+                named,
                 program_of,
+                allow_code=allow_code,
                 strict=strict,
                 only_verdict=only_verdict,
                 progress=tell,
                 reading=reading,
             )
+            yield from run.judged
+            yield from run.not_judged
         except SpecError as error:
             yield Unusable(str(trace), error)
 
@@ -88,6 +102,11 @@ def verify_each(
 def verifications(outcomes: Sequence[Outcome]) -> tuple[Verification, ...]:
     """Those that have a verdict."""
     return tuple(each for each in outcomes if isinstance(each, Verification))
+
+
+def not_judged(outcomes: Sequence[Outcome]) -> tuple[NotJudged, ...]:
+    """Nodes of which nothing can be said."""
+    return tuple(each for each in outcomes if isinstance(each, NotJudged))
 
 
 def unusable(outcomes: Sequence[Outcome]) -> tuple[Unusable, ...]:
@@ -112,10 +131,20 @@ class Pool:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Runs:
-    """The outcome of each recording, and those of one spec together."""
+    """The outcome of each recording, and those of one spec together.
+
+    is_whole: whether all recordings that were named have an outcome.
+    """
 
     outcomes: tuple[Outcome, ...]
     pools: tuple[Pool, ...]
+    is_whole: bool = True
+
+    @property
+    def only(self) -> Verification | None:
+        """The one verdict, where one recording was judged by one spec."""
+        first = self.outcomes[0] if self.is_whole and len(self.outcomes) == 1 else None
+        return first if isinstance(first, Verification) and not first.part else None
 
     @property
     def members(self) -> frozenset[Verification]:
@@ -143,6 +172,7 @@ def verify_together(
     spec: Path | str | Program | None = None,
     clock: Clock = "auto",
     *,
+    allow_code: bool = False,
     strict: bool = False,
     only_verdict: bool = False,
     progress: Callable[[str, str], None] | None = None,
@@ -152,35 +182,71 @@ def verify_together(
     Short ones may decide together what none of them does. Arguments and errors: see `verify_each`.
     """
     each = verify_each(
-        traces, spec, clock, strict=strict, only_verdict=only_verdict, progress=progress
+        traces,
+        spec,
+        clock,
+        allow_code=allow_code,
+        strict=strict,
+        only_verdict=only_verdict,
+        progress=progress,
     )
     return runs_of(tuple(each))
 
 
-def runs_of(outcomes: Sequence[Outcome]) -> Runs:
+def runs_of(outcomes: Sequence[Outcome], *, is_whole: bool = True) -> Runs:
     """The outcomes, with a common verdict on those of each spec."""
-    by_spec: dict[tuple[str, str], list[Verification]] = {}
+    by_spec: dict[tuple[str, str, str], list[Verification]] = {}
     for each in verifications(outcomes):
         if each.judgement is None:
             continue  # decisions of several logs are not put together
         spec = each.report.spec
-        by_spec.setdefault((spec.name, spec.sha256), []).append(each)
+        by_spec.setdefault((spec.name, spec.sha256, each.part), []).append(each)
     pools = tuple(_pool(members) for members in by_spec.values() if len(members) > 1)
-    return Runs(tuple(outcomes), pools)
+    return Runs(tuple(outcomes), pools, is_whole)
 
 
 def _pool(members: Sequence[Verification]) -> Pool:
     program = members[0].found.program
     assert isinstance(program, Program), "what has a judgement was judged by a program"
     report = pooled(program, [each.judgement for each in members if each.judgement])
+    if part := members[0].part:
+        source = f"{report.trace.source}: {part}"
+        report = replace(report, trace=replace(report.trace, source=source))
     return Pool(tuple(members), Examination(report, origins=members[0].examination.origins))
 
 
 def counted(outcomes: Sequence[Outcome]) -> str:
-    """`5 recordings: 1 fail, 3 pass, 1 can't be used`."""
+    """`5 recordings: 1 fail, 3 pass, 1 can't be used`; nodes of a scenario's are counted, too."""
     found = [each.report.verdict for each in verifications(outcomes)]
     parts = [f"{found.count(v)} {v}" for v in WORST_FIRST if v in found]
-    lost = len(unusable(outcomes))
+    lost, skipped = len(unusable(outcomes)), len(not_judged(outcomes))
+    parts += [f"{skipped} not judged"] if skipped else []
     parts += [f"{lost} can't be used"] if lost else []
-    total = len(outcomes)
-    return f"{total} recording{'' if total == 1 else 's'}: {', '.join(parts) or 'none judged'}"
+    told = listed([_plural(n, what) for what, n in _things(outcomes).items() if n])
+    return f"{told}: {', '.join(parts) or 'none judged'}"
+
+
+def _things(outcomes: Sequence[Outcome]) -> dict[str, int]:
+    """How many recordings there are, and what was judged of those of scenarios."""
+    parts = [each.part for each in verifications(outcomes)]
+    nodes = [each for each in parts if each and each != REQUIREMENTS]
+    return {
+        "recording": len({recording_of(each) for each in outcomes}),
+        "list of requirements": parts.count(REQUIREMENTS),
+        "node": len(nodes) + len(not_judged(outcomes)),
+    }
+
+
+def recording_of(outcome: Outcome) -> str:
+    """The file that it is about."""
+    if isinstance(outcome, Unusable):
+        return outcome.source
+    source = source_of(outcome)
+    is_part = isinstance(outcome, NotJudged) or outcome.part
+    return source.rpartition(": ")[0] if is_part else source
+
+
+def _plural(count: int, what: str) -> str:
+    if count == 1:
+        return f"{count} {what}"
+    return f"{count} lists of requirements" if what.startswith("list") else f"{count} {what}s"

@@ -1,13 +1,24 @@
 """Recordings as JSON values, in the format of docs/json_report.md."""
 
-from specc.runs import WORST_FIRST, Outcome, Pool, Runs, Unusable, unusable, verifications
+from specc.runs import Outcome, Pool, Runs, Unusable, not_judged, unusable, verifications
 from specc.verifying import Verification
+from specc.verifying_architecture import NotJudged
 from verifier.report.examination_record import FORMAT, examination_record
+from verifier.report.report import WORST_FIRST
 
 
 def run_record(verification: Verification) -> dict[str, object]:
     """One recording: its report, and how its spec was found."""
-    return {**examination_record(verification.examination), "found_by": verification.found.how}
+    return {
+        **examination_record(verification.examination),
+        "part": verification.part or None,
+        "found_by": verification.found.how,
+    }
+
+
+def record_of(runs: Runs) -> dict[str, object]:
+    """One recording under one spec as `run_record` has it, anything else as `runs_record`."""
+    return runs_record(runs) if runs.only is None else run_record(runs.only)
 
 
 def runs_record(runs: Runs) -> dict[str, object]:
@@ -17,7 +28,10 @@ def runs_record(runs: Runs) -> dict[str, object]:
         "format": FORMAT,
         "verdict": None if runs.verdict is None else str(runs.verdict),
         "counts": {str(verdict): found.count(verdict) for verdict in WORST_FIRST}
-        | {"unusable": len(unusable(runs.outcomes))},
+        | {
+            "not_judged": len(not_judged(runs.outcomes)),
+            "unusable": len(unusable(runs.outcomes)),
+        },
         "together": [_pool(each) for each in runs.pools],
         "runs": [_run(each) for each in runs.outcomes],
     }
@@ -29,6 +43,8 @@ def _pool(pool: Pool) -> dict[str, object]:
 
 
 def _run(outcome: Outcome) -> dict[str, object]:
+    if isinstance(outcome, NotJudged):
+        return {"trace": {"source": outcome.source}, "not_judged": outcome.why}
     if isinstance(outcome, Unusable):
         diagnostics = [each.as_json() for each in outcome.error.diagnostics]
         return {"trace": {"source": outcome.source}, "diagnostics": diagnostics}

@@ -2,16 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal, TypeAlias, final
 
 from runtime.arbiter import Arbiter
 from runtime.program import Program
+from runtime.requirement import Requirement
 from spec_schema.arbiter import ArbiterSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import Loaded, load
+from specc.faults import fault
 from specc.loading import load_program, refuse_log
+from specc.run_standard import carries_architectures
 from specc.spec_finding import Found, find_spec
 from specc.verifying_arbiter import arbiter_for_verify, examine_arbiter
 from verifier.arbitration.reader import reader_of
@@ -23,6 +27,8 @@ from verifier.traces.files.log import Progress
 from verifier.traces.read import read_trace
 
 Clock: TypeAlias = Literal["auto", "sensor", "log"]
+Judged: TypeAlias = Program | Arbiter | tuple[Requirement, ...]
+"""What something is judged by."""
 
 
 @final
@@ -31,11 +37,13 @@ class Verification:
     """An examination, and the spec that it was made under.
 
     judgement: what the verdict rests on, without what was read and predicted; of an arbiter None.
+    part: which part of a scenario's recording it is about: `robot.node`, or `requirements`.
     """
 
-    found: Found[Program | Arbiter]
+    found: Found[Judged]
     examination: Examination
     judgement: Judgement | None
+    part: str = ""
 
     @property
     def report(self) -> Report:
@@ -48,6 +56,7 @@ def verify(
     spec: Path | str | Program | None = None,
     clock: Clock = "auto",
     *,
+    allow_code: bool = False,
     strict: bool = False,
     only_verdict: bool = False,
     progress: Callable[[str], None] | None = None,
@@ -55,20 +64,26 @@ def verify(
 ) -> Verification:
     """Judge a recording against its spec: the one given, else attached, else the project's.
 
+    The recording of a scenario has many specs: see `verify_run`.
+
     Args:
+        allow_code: whether an arbiter that is code of the user's own may be run.
         strict: any loss in the log is an error.
         only_verdict: leave out what explains the verdict.
         progress: is told what is done next, as a phrase.
         reading: is told now and then how many bytes of how many were read.
 
     Raises:
-        SpecError: the spec or the log can't be used.
+        SpecError: the spec or the log can't be used, or it is a scenario's recording (V393).
     """
+    if carries_architectures(Path(trace)):
+        message = "this is the recording of a scenario, in which each node has a spec of its own"
+        raise fault("V393", trace, message, "use specc.verify_run")
     return verify_by(
         Path(trace),
         spec,
         clock,
-        program_for_verify,
+        partial(program_for_verify, allow_code=allow_code),
         strict=strict,
         only_verdict=only_verdict,
         progress=progress,
@@ -104,27 +119,27 @@ def verify_by(
         read = read_trace(trace, reader_of(arbiter), clock, reading, strict=strict)
         tell("judging")
         examined = examine_arbiter(arbiter, read, only_verdict=only_verdict)
-        return Verification(found, examined, None)
+        return Verification(Found(arbiter, found.how), examined, None)
     read = read_trace(trace, found.program, clock, reading, strict=strict)
     tell("judging")
     judgement = judgement_of(found.program, read)
     made = explain(found.program, read, judgement, tell, only_verdict=only_verdict)
-    return Verification(found, made, replace(judgement, study=None))
+    return Verification(Found(found.program, found.how), made, replace(judgement, study=None))
 
 
 def _in_silence(_phase: str) -> None:
     """Nobody watches."""
 
 
-def program_for_verify(path: Path) -> Program | Arbiter:
-    """What `verify` judges by; it runs nothing that a spec's author wrote.
+def program_for_verify(path: Path, *, allow_code: bool = False) -> Program | Arbiter:
+    """What `verify` judges by; of what a spec's author wrote, an arbiter alone may be allowed.
 
     Raises:
         SpecError: the spec is wrong, or it is code.
     """
     refuse_log(path)
     if path.suffix != ".specc" and isinstance(load(path).spec, ArbiterSpec):
-        return arbiter_for_verify(path)
+        return arbiter_for_verify(path, allow_code=allow_code)
     return behavior_for_verify(path)
 
 

@@ -7,7 +7,7 @@ from compiler.architecture.arbiters import compile_arbiter
 from runtime.arbiter import Arbiter, Paradigm
 from runtime.arbitration.build import arbiter_of
 from runtime.arrays import Array
-from runtime.user_code import Callee
+from runtime.user_code import UserCodeError, load_callee
 from specc.faults import fault
 from verifier.arbitration.judging import judge_arbiter
 from verifier.arbitration.reader import CHOICE
@@ -18,17 +18,16 @@ SEED = 0
 """Of the chance that a competition takes."""
 
 
-def arbiter_for_verify(path: Path) -> Arbiter:
-    """An arbiter for `verify`, which runs nothing that a spec's author wrote.
+def arbiter_for_verify(path: Path, *, allow_code: bool = False) -> Arbiter:
+    """An arbiter for `verify`, which runs what a spec's author wrote only where that is allowed.
 
     Raises:
         SpecError: the spec is wrong, or it decides by code (V336).
     """
     arbiter = compile_arbiter(path).arbiter
-    if arbiter.paradigm is Paradigm.MODULE:
-        message = "this arbiter decides by Python code, and verify runs nobody's code"
-        remedy = "write its rules down, and judge those"
-        raise fault("V336", path, message, remedy)
+    if arbiter.paradigm is Paradigm.MODULE and not allow_code:
+        message = "this arbiter decides by Python code, which verify runs only where it is allowed"
+        raise fault("V336", path, message, "read that code, then verify with --allow-code")
     return arbiter
 
 
@@ -36,20 +35,34 @@ def examine_arbiter(arbiter: Arbiter, trace: Trace, *, only_verdict: bool = Fals
     """The verdict on the robot's decisions, and what explains it.
 
     Raises:
-        SpecError: the choice, or something that is read, is not in the log (V310).
+        SpecError: the choice, or something that is read, is not in the log (V310), or the
+            arbiter's own code fails (V382).
     """
-    decides = running(arbiter, arbiter.name, _period(trace))
-    made = judge_arbiter(arbiter, trace, decides, only_verdict=only_verdict)
+    beside = Path(arbiter.source.file).parent
+    try:
+        decides = running(arbiter, arbiter.name, _period(trace), beside=beside)
+        made = judge_arbiter(arbiter, trace, decides, only_verdict=only_verdict)
+    except UserCodeError as error:
+        raise fault("V382", arbiter.source.file, str(error), "mend that code") from error
     origins = {"fidelity": made.section.origin}
     return Examination(made.report, origins=origins, arbitration=made.section)
 
 
-def running(arbiter: Arbiter, name: str, period: float) -> Callable[[Array, float], Array] | None:
-    """One that decides tick by tick, of those that are no rules, under the name of its node."""
+def running(
+    arbiter: Arbiter, name: str, period: float, *, seed: int = SEED, beside: Path
+) -> Callable[[Array, float], Array] | None:
+    """One that decides tick by tick, of those that are no rules, under the name of its node.
+
+    seed: with that of a run, an arbiter that takes chances takes those that it took there.
+    beside: the folder of its spec, where code of the user's own is found.
+
+    Raises:
+        UserCodeError: its code can't be found.
+    """
     if arbiter.paradigm in {Paradigm.RULES, Paradigm.SUBSUMPTION}:
         return None
-    made = arbiter_of(arbiter, name, period, _no_code)
-    made.reset(SEED)
+    made = arbiter_of(arbiter, name, period, lambda text: load_callee(text, beside))
+    made.reset(seed)
     return made.decide
 
 
@@ -59,7 +72,3 @@ def _period(trace: Trace) -> float:
     if choice is None or choice.times.size < 2:
         return 0.1
     return float((choice.times[-1] - choice.times[0]) / (choice.times.size - 1))
-
-
-def _no_code(name: str) -> Callee:
-    raise AssertionError(f"{name}: verify runs nobody's code")

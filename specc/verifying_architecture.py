@@ -1,93 +1,101 @@
 """A recorded architecture: each of its nodes judged by its own spec, where it had its way."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import Final, final
+from pathlib import Path
+from typing import final
 
-from runtime.arbiter import Paradigm
+from runtime.arbiter import Arbiter, Paradigm
 from runtime.architecture import Architecture
+from runtime.program import Program
+from runtime.user_code import UserCodeError
 from spec_schema.diagnostics import SpecError
 from specc.verifying_arbiter import running
 from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
+from verifier.fidelity.verify import Judgement
 from verifier.report.examination import Examination
-from verifier.report.layout import table
-from verifier.report.report import Verdict
-from verifier.report.wording import seconds
-
-WORST_FIRST: Final = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class NodeVerdict:
-    """A node, and what its record shows; `why` it can't be judged where there is no examination."""
+    """A node, what it was judged by, and what its record shows.
+
+    name: `robot.node`. judgement: of a behavior, for judging several recordings together.
+    """
 
     name: str
-    spec: str
-    examination: Examination | None
+    spec: Program | Arbiter
+    examination: Examination
+    judgement: Judgement | None
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class NotJudged:
+    """A node, or more, of a recording of which nothing can be said: `source` says which."""
+
+    source: str
     why: str
 
 
+@final
+@dataclass(frozen=True, slots=True)
+class How:
+    """How nodes are judged.
+
+    seed: of the run, which the chance of its arbiters follows from. only: their names; None for
+    all. allow_code: whether arbiters that are code of the user's own may be run.
+    """
+
+    seed: int = 0
+    only: Collection[str] | None = None
+    allow_code: bool = False
+    only_verdict: bool = False
+
+
 def examine_nodes(
-    architecture: Architecture,
-    records: Sequence[NodeRecord],
-    source: str,
-    *,
-    only_verdict: bool = False,
-) -> tuple[NodeVerdict, ...]:
+    architecture: Architecture, records: Sequence[NodeRecord], source: str, how: How
+) -> tuple[NodeVerdict | NotJudged, ...]:
     """Every node of one robot judged by its own spec, in the order of nodes.
 
     Behaviors are judged where they had their way; arbiters at every tick.
     """
     return tuple(
-        _examined(architecture, place, record, source, only_verdict=only_verdict)
+        _examined(architecture, place, record, source, how)
         for place, record in enumerate(records)
+        if how.only is None or record.name in how.only
     )
 
 
 def _examined(
-    architecture: Architecture,
-    place: int,
-    record: NodeRecord,
-    source: str,
-    *,
-    only_verdict: bool,
-) -> NodeVerdict:
+    architecture: Architecture, place: int, record: NodeRecord, source: str, how: How
+) -> NodeVerdict | NotJudged:
     node = architecture.nodes[place]
+    named = f"{source}: {record.name}"
     if not record.times.size:
-        return NodeVerdict(node.name, "", None, "it never had a tick")
+        is_module = node.behavior < 0 and node.arbiter < 0
+        why = (
+            "it is a module of the user's own, which promises nothing that could be judged"
+            if is_module
+            else "the recording holds no tick of it"
+        )
+        return NotJudged(named, why)
     try:
         if node.behavior >= 0:
             program = architecture.programs[node.behavior]
-            made = examine_behavior(program, record, source, only_verdict=only_verdict)
-            return NodeVerdict(node.name, program.name, made, "")
-        if node.arbiter < 0 or architecture.arbiters[node.arbiter].paradigm is Paradigm.MODULE:
-            return NodeVerdict(
-                node.name, node.module, None, "it is code, which verify does not run"
-            )
+            made = examine_behavior(program, record, source, only_verdict=how.only_verdict)
+            return NodeVerdict(record.name, made.program, made.examination, made.judgement)
         arbiter = architecture.arbiters[node.arbiter]
-        decides = running(arbiter, node.name, node.period)
-        made = examine_decisions(arbiter, record, source, decides, only_verdict=only_verdict)
-        return NodeVerdict(node.name, arbiter.name, made, "")
+        if arbiter.paradigm is Paradigm.MODULE and not how.allow_code:
+            return NotJudged(
+                named, f"{arbiter.module} is code, which verify runs only with --allow-code"
+            )
+        beside = Path(architecture.source.file).parent
+        decides = running(arbiter, record.name, node.period, seed=how.seed, beside=beside)
+        found = examine_decisions(arbiter, record, source, decides, only_verdict=how.only_verdict)
+        return NodeVerdict(record.name, arbiter, found, None)
     except SpecError as error:
-        return NodeVerdict(node.name, "", None, error.diagnostics[0].message)
-
-
-def verdict_of(found: Sequence[NodeVerdict]) -> Verdict | None:
-    """The worst of all nodes that could be judged; None where none could."""
-    verdicts = {each.examination.report.verdict for each in found if each.examination}
-    return next((verdict for verdict in WORST_FIRST if verdict in verdicts), None)
-
-
-def nodes_text(found: Sequence[NodeVerdict]) -> str:
-    """A row for each node: its spec, the verdict, how long it was judged, and why."""
-    return table([("node", "spec", "verdict", "judged", "why"), *(_row(each) for each in found)])
-
-
-def _row(each: NodeVerdict) -> tuple[str, ...]:
-    if each.examination is None:
-        return (each.name, each.spec, "-", "-", each.why)
-    report = each.examination.report
-    why = "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])
-    judged = f"{seconds(report.trace.judged)} of {seconds(report.trace.duration)}"
-    return (each.name, each.spec, report.verdict.upper(), judged, why)
+        return NotJudged(named, error.diagnostics[0].message)
+    except UserCodeError as error:
+        return NotJudged(named, str(error))

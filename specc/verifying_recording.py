@@ -1,74 +1,229 @@
-"""The recording of a scenario: every node of every robot judged by its own spec."""
+"""The recording of a scenario judged: what it requires, and every node by its own spec."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Final, final
 
-from runtime import architecture_artifact
 from runtime.arbiter import Arbiter
-from runtime.architecture import Architecture, Node
-from runtime.container import ArtifactError
 from runtime.program import Program
+from runtime.recording.tracks import Quantity
+from runtime.requirement import Requirement
+from runtime.scenario import Robot
+from spec_schema.diagnostics import Diagnostic, SpecError
+from spec_schema.suggest import did_you_mean
 from specc.faults import fault
+from specc.run_standard import Carried, Standard, carried_by, standard_of
 from specc.spec_finding import Found
-from specc.verifying import Verification
-from specc.verifying_architecture import examine_nodes
-from verifier.architectures.recorded import read_nodes
-from verifier.traces.files.open_log import attached_programs
+from specc.verifying import Verification, program_for_verify
+from specc.verifying_architecture import How, NodeVerdict, NotJudged, examine_nodes
+from verifier.architectures.log import RunLog, open_run
+from verifier.architectures.quantities import POSE, quantities_in, topics_of_quantities
+from verifier.architectures.recorded import records_of, topics_of_nodes
+from verifier.architectures.required import examine_requirements, results_on
+from verifier.report.report import WORST_FIRST, Verdict
+from verifier.traces.files.log import Progress
+from verifier.traces.read import refuse_losses
+
+REQUIREMENTS: Final = "requirements"
+"""What that part of a recording is called that no node answers for."""
+MOST_NAMED: Final = 12
+"""So many quantities are listed."""
 
 
-def attached_architectures(trace: Path) -> dict[str, Architecture]:
-    """By robot, the architectures that a recording carries; none where it is of something else.
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class RunVerification:
+    """What the recording of a scenario shows of its requirements and of its nodes.
 
-    Raises:
-        SpecError: one of them is damaged (V332).
+    requirements: None where nothing is required. nodes: in the order of robots and nodes, each
+    with its `part`, `robot.node`. not_judged: nodes of which nothing can be said, and why.
     """
-    if trace.suffix.lower() != ".mcap" or not trace.is_file():
-        return {}
-    found: dict[str, Architecture] = {}
-    for name, data in attached_programs(trace):
-        try:
-            if architecture_artifact.is_architecture(data):
-                found[name.removesuffix(".specc")], _ = architecture_artifact.from_bytes(data)
-        except ArtifactError as error:
-            message = f"the attached {name} can't be used: {error}"
-            raise fault("V332", trace, message, "record it again") from error
-    return found
+
+    source: str
+    requirements: Verification | None
+    nodes: tuple[Verification, ...]
+    not_judged: tuple[NotJudged, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst of the requirements and of all nodes."""
+        found = {each.report.verdict for each in self.judged}
+        return next(verdict for verdict in WORST_FIRST if verdict in found)
+
+    @property
+    def judged(self) -> tuple[Verification, ...]:
+        """All that has a verdict, the requirements first."""
+        return (*([self.requirements] if self.requirements else []), *self.nodes)
+
+    def node(self, name: str) -> Verification:
+        """The verdict on `robot.node`.
+
+        Raises:
+            KeyError: it has none.
+        """
+        return {each.part: each for each in self.nodes}[name]
 
 
-def verify_recording(
-    trace: Path,
-    architectures: Mapping[str, Architecture],
+def verify_run(
+    trace: Path | str,
+    spec: Path | str | Program | None = None,
     *,
+    allow_code: bool = False,
+    strict: bool = False,
     only_verdict: bool = False,
     progress: Callable[[str], None] | None = None,
-) -> Iterator[Verification]:
-    """A verdict on each node that is a behavior or an arbiter, and that can be judged.
+    reading: Progress | None = None,
+) -> RunVerification:
+    """Judge the recording of a scenario: its requirements, and each node where it had its way.
+
+    Args:
+        spec: a scenario, an architecture, or one behavior or arbiter; None: what is attached.
+        allow_code: whether arbiters that are code of the user's own may be run.
+        strict: any loss in the recording is an error.
+        only_verdict: leave out what explains the verdicts.
+        progress: is told what is done next, as a phrase.
+        reading: is told now and then how many bytes of how many were read.
 
     Raises:
-        SpecError: the recording can't be read, or holds no node that can be judged (V391).
+        SpecError: this is no recording of a scenario, it or the spec can't be used, or nothing of
+            it can be judged (V391).
     """
-    tell = progress or (lambda _phase: None)
+    trace = Path(trace)
+    carried = carried_by(trace)
+    if carried is None:
+        raise fault("V393", trace, "this is not the recording of a scenario", "use specc.verify")
+    named = spec if spec is None or isinstance(spec, Program) else Path(spec)
+    return verify_carried(
+        trace,
+        carried,
+        named,
+        program_for_verify,
+        allow_code=allow_code,
+        strict=strict,
+        only_verdict=only_verdict,
+        progress=progress,
+        reading=reading,
+    )
+
+
+def verify_carried(
+    trace: Path,
+    carried: Carried,
+    spec: Path | Program | None,
+    program_of: Callable[[Path], Program | Arbiter],
+    *,
+    allow_code: bool,
+    strict: bool,
+    only_verdict: bool,
+    progress: Callable[[str], None] | None,
+    reading: Progress | None,
+) -> RunVerification:
+    """What `verify_run` does, with what the recording carries at hand.
+
+    Raises:
+        SpecError: see `verify_run`.
+    """
+    tell = progress or _in_silence
+    standard = standard_of(trace, carried, spec, program_of)
     tell("reading")
-    robots = read_nodes(trace, architectures)
+    log = _opened(trace, carried, standard, reading)
+    if strict:
+        refuse_losses(trace, log.losses)
     tell("judging")
-    is_judged = False
-    why = []
-    for robot, architecture in architectures.items():
-        for place, made in enumerate(
-            examine_nodes(architecture, robots[robot], str(trace), only_verdict=only_verdict)
-        ):
-            if made.examination is None:
-                why.append(f"{robot}.{made.name}: {made.why}")
+    required = _required(trace, carried, standard, log)
+    how = How(_seed(carried), standard.only, allow_code, only_verdict)
+    records = records_of(log, {robot.name: robot.architecture for robot in standard.robots})
+    found = [
+        each
+        for robot in standard.robots
+        for each in examine_nodes(robot.architecture, records[robot.name], str(trace), how)
+    ]
+    nodes = tuple(_verification(each, standard) for each in found if isinstance(each, NodeVerdict))
+    lost = tuple(each for each in found if isinstance(each, NotJudged))
+    if required is None and not nodes:
+        why = "; ".join(f"{each.source}: {each.why}" for each in lost)
+        raise fault("V391", trace, "no node of it can be judged, and nothing is required", why)
+    return RunVerification(str(trace), required, nodes, lost)
+
+
+def _opened(trace: Path, carried: Carried, standard: Standard, reading: Progress | None) -> RunLog:
+    topics = dict(topics_of_nodes({r.name: r.architecture for r in standard.robots}))
+    if standard.requirements:
+        things = _things(standard.requirements, carried.robots)
+        for topic, fields in topics_of_quantities(carried.robots, things).items():
+            known = {field.name for field in topics.get(topic, [])}
+            more = [field for field in fields if field.name not in known]
+            topics[topic] = [*topics.get(topic, []), *more]
+    step = 0.0 if carried.document is None else carried.document.step
+    return open_run(trace, topics, step, reading)
+
+
+def _things(requirements: Sequence[Requirement], robots: Sequence[Robot]) -> list[str]:
+    """The names of what requirements read the pose of, and that is no robot."""
+    names = [name for each in requirements for name in each.quantities]
+    heads = {head for head, _, last in (name.rpartition(".") for name in names) if last in POSE}
+    return sorted(heads - {robot.name for robot in robots})
+
+
+def _required(
+    trace: Path, carried: Carried, standard: Standard, log: RunLog
+) -> Verification | None:
+    if not standard.requirements:
+        return None
+    things = _things(standard.requirements, carried.robots)
+    quantities = quantities_in(log, carried.robots, things)
+    _refuse_unknown(trace, standard.requirements, quantities)
+    ends = [float(each.times[-1]) for each in quantities.values() if each.times.size]
+    duration = max(ends, default=0.0)
+    document = carried.document
+    if document is not None and not log.losses:
+        duration = round(document.duration / document.step) * document.step
+    results = results_on(standard.requirements, quantities, duration)
+    source = f"{trace}: {REQUIREMENTS}"
+    made = examine_requirements(results, standard.spec, source, duration, log.losses)
+    return Verification(Found(standard.requirements, standard.how), made, None, REQUIREMENTS)
+
+
+def _refuse_unknown(
+    trace: Path, requirements: Sequence[Requirement], quantities: dict[str, Quantity]
+) -> None:
+    """Every quantity that is read was recorded.
+
+    Raises:
+        SpecError: one was not (V394).
+    """
+    mistakes: list[Diagnostic] = []
+    for each in requirements:
+        for name in each.quantities:
+            if name in quantities:
                 continue
-            is_judged = True
-            how = f"{robot}.specc, attached to the trace: {made.name} by {made.spec}"
-            spec = _spec_of(architecture, architecture.nodes[place])
-            yield Verification(Found(spec, how), made.examination, None)
-    if not is_judged:
-        raise fault("V391", trace, "no node of it can be judged", "; ".join(why))
+            message = f"'{each.text}' is about '{name}', which is not in this recording"
+            error = fault("V394", trace, message, _there(name, quantities))
+            mistakes += error.diagnostics
+    if mistakes:
+        raise SpecError(mistakes)
 
 
-def _spec_of(architecture: Architecture, node: Node) -> Program | Arbiter:
-    if node.behavior >= 0:
-        return architecture.programs[node.behavior]
-    return architecture.arbiters[node.arbiter]
+def _there(name: str, quantities: dict[str, Quantity]) -> str:
+    """What may be meant, and what there is of the same robot, or at all."""
+    alike = [other for other in quantities if other.partition(".")[0] == name.partition(".")[0]]
+    known = sorted(alike or quantities)
+    more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
+    there = f"there are: {', '.join(known[:MOST_NAMED])}{more}"
+    return "\n".join(part for part in (did_you_mean(name, quantities), there) if part)
+
+
+def _verification(each: NodeVerdict, standard: Standard) -> Verification:
+    how = standard.how
+    if standard.how == "attached to the trace":
+        how = f"{each.name.partition('.')[0]}.specc, attached to the trace"
+    return Verification(Found(each.spec, how), each.examination, each.judgement, each.name)
+
+
+def _seed(carried: Carried) -> int:
+    return 0 if carried.document is None else carried.document.seed
+
+
+def _in_silence(_phase: str) -> None:
+    """Nobody watches."""

@@ -28,6 +28,9 @@ CHOICE: Final = "choice"
 READINGS: Final = "readings"
 CHANNELS: Final = "base/channels"
 DRIVEN: Final = "base/driven"
+MEASURED: Final = "base/measured"
+CLOSE: Final = "base/close"
+THINGS: Final = "/world/things"
 
 
 def topic_of(robot: str, node: str, what: str) -> str:
@@ -68,10 +71,10 @@ def _tell_node(messages: Messages, robot: Robot, node: Node, ticks: NodeTrack) -
         tell(OUTPUT, [_field(o) for o in program.outputs], ticks.outputs)
     elif node.arbiter >= 0:
         tell(READS, fields_of_reads(architecture.arbiters[node.arbiter]), ticks.register)
-        tell(CHOICE, _told(architecture, node), ticks.outputs)
+        tell(CHOICE, told_by(architecture, node), ticks.outputs)
     else:
         tell(READS, [Field(wire.entry) for wire in node.inputs], ticks.register)
-        tell(OUTPUT, _told(architecture, node), ticks.outputs)
+        tell(OUTPUT, told_by(architecture, node), ticks.outputs)
 
 
 def fields_of_reads(arbiter: Arbiter) -> list[Field]:
@@ -98,7 +101,7 @@ def _tell_channels(messages: Messages, robot: Robot, track: RobotTrack) -> None:
     tell_rows(messages, f"/{robot.name}/{DRIVEN}", flags, times, set_points.driven)
 
 
-def _told(architecture: Architecture, node: Node) -> list[Field]:
+def told_by(architecture: Architecture, node: Node) -> list[Field]:
     """What a node writes on the board, under the names that it has there."""
     signals = [architecture.board[place] for place in node.outputs]
     return [

@@ -15,7 +15,7 @@ from runtime.program_json import to_plain
 from runtime.recording.drawn import tell_drawn
 from runtime.recording.foxglove import classes
 from runtime.recording.messages import Messages, nanoseconds
-from runtime.recording.nodes import tell_robot
+from runtime.recording.nodes import CLOSE, MEASURED, THINGS, tell_robot
 from runtime.recording.tables import Field, tell_rows
 from runtime.requirement import Requirement
 from runtime.run import Run
@@ -26,9 +26,6 @@ ARCHITECTURE: Final = "application/vnd.specc"
 DOCUMENT: Final = "application/json"
 FORMAT: Final = 1
 """The version of the scenario's document."""
-MEASURED: Final = "base/measured"
-CLOSE: Final = "base/close"
-THINGS: Final = "/world/things"
 WARNING: Final = 3
 """`Log.WARNING`."""
 

@@ -1,6 +1,7 @@
 """`specc verify`: does the robot do what the spec says?"""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, final
 
@@ -21,6 +22,8 @@ from specc.cli.status import Status
 from specc.cli.warming import warmed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from specc.cli.console import Bar
     from specc.runs import Outcome, Runs
 
@@ -36,6 +39,10 @@ def verify(
     output: Reports = [],  # noqa: B006  typer copies it
     clock: ClockOption = Clock.AUTO,
     strict: Strict = False,
+    allow_code: Annotated[
+        bool,
+        typer.Option("--allow-code", help="Run arbiters that are Python of yours, to judge them."),
+    ] = False,
     quick: Annotated[
         bool, typer.Option("--quick", help="The verdict only, without what explains it.")
     ] = False,
@@ -46,8 +53,9 @@ def verify(
     With several recordings it prints a table and judges all of one spec together: a FAIL of one
     counts, else the verdict on all, which short recordings may reach that decide nothing alone.
 
-    In the recording of a scenario every behavior and arbiter of every robot is judged by its own
-    spec, a behavior where it had its way: a row for each, and one verdict.
+    In the recording of a scenario what is required is judged, and every behavior and arbiter of
+    every robot by its own spec, a behavior where it had its way: a row for each, and one verdict.
+    `--spec` may then be a scenario, an architecture, or one behavior or arbiter.
 
     **Examples**
 
@@ -66,34 +74,45 @@ def verify(
     for path in output:
         require_suffix(path, *KINDS)
     warmed(spec)
-    outcomes: list[Outcome] = []
-    is_interrupted = False
-    with shown_bar("verify") as bar:
-        watch = _Watch(bar, len(traces))
-        each = verify_each(
-            traces,
-            spec,
-            clock.value,
-            strict=strict,
-            only_verdict=quick,
-            progress=watch.tell,
-            reading=watch.read,
-        )
-        try:
-            outcomes.extend(each)
-        except KeyboardInterrupt:
-            is_interrupted = True
+    judge = partial(
+        verify_each,
+        traces,
+        spec,
+        clock.value,
+        allow_code=allow_code,
+        strict=strict,
+        only_verdict=quick,
+    )
+    outcomes, is_interrupted = _judged(judge, len(traces))
     if len(traces) == 1 and outcomes and isinstance(outcomes[0], Unusable):
         raise outcomes[0].error
-    runs = runs_of(outcomes)
+    runs = runs_of(outcomes, is_whole=not is_interrupted)
     if outcomes:
-        is_one = len(traces) == len(outcomes) == 1
-        _print(runs, form, is_one=is_one)
-        _write(runs, output, is_one=is_one)
+        _print(runs, form)
+        _write(runs, output)
     if is_interrupted:
-        say(f"interrupted: {len(outcomes)} of {len(traces)} recordings were judged", "bold red")
+        told = f"{_recordings(outcomes)} of {len(traces)} recordings were judged"
+        say(f"interrupted: {told}", "bold red")
         return Status.INTERRUPTED
     return _status(runs)
+
+
+def _judged(judge: "Callable[..., Iterator[Outcome]]", count: int) -> "tuple[list[Outcome], bool]":
+    """The outcomes, and whether Ctrl-C came before the last of them."""
+    outcomes: list[Outcome] = []
+    with shown_bar("verify") as bar:
+        watch = _Watch(bar, count)
+        try:
+            outcomes.extend(judge(progress=watch.tell, reading=watch.read))
+        except KeyboardInterrupt:
+            return outcomes, True
+    return outcomes, False
+
+
+def _recordings(outcomes: "Sequence[Outcome]") -> int:
+    from specc.runs import recording_of
+
+    return len({recording_of(each) for each in outcomes})
 
 
 @final
@@ -119,36 +138,30 @@ class _Watch:
         self._bar.advance(what, round((self._done + share) * PIECES), self._count * PIECES)
 
 
-def _print(runs: "Runs", form: ReportFormat, *, is_one: bool) -> None:
+def _print(runs: "Runs", form: ReportFormat) -> None:
     from specc.reported import findings_by_source
     from specc.runs import verifications
-    from specc.runs_record import run_record, runs_record
-    from specc.texts.runs import runs_table
+    from specc.runs_record import record_of
+    from specc.texts.runs import told_text
     from verifier.report.annotations import as_annotations
-    from verifier.report.examination_text import examination_text
 
-    found = verifications(runs.outcomes)
     match form:
         case ReportFormat.JSON:
-            print_json(run_record(found[0]) if is_one else runs_record(runs))
+            print_json(record_of(runs))
         case ReportFormat.GITHUB:
             lines = [as_annotations(each, source) for source, each in findings_by_source(runs)]
             print_text("\n".join(line for line in lines if line))
         case ReportFormat.TEXT:
-            for how in dict.fromkeys(each.found.how for each in found):
+            for how in dict.fromkeys(each.found.how for each in verifications(runs.outcomes)):
                 say(f"spec: {how}")
-            print_text(examination_text(found[0].examination) if is_one else runs_table(runs))
+            print_text(told_text(runs))
 
 
-def _write(runs: "Runs", output: Sequence[Path], *, is_one: bool) -> None:
-    from specc.reported import write_report, write_reports
-    from specc.runs import verifications
+def _write(runs: "Runs", output: Sequence[Path]) -> None:
+    from specc.reported import write_reports
 
     for path in output:
-        if is_one:
-            write_report(verifications(runs.outcomes)[0], path)
-        else:
-            write_reports(runs, path)
+        write_reports(runs, path)
         say(f"wrote {path}", "bold")
 
 

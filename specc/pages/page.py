@@ -120,8 +120,24 @@ class RunRow:
 
 @final
 @dataclass(frozen=True, slots=True)
+class RunsTable:
+    """Rows of like kind. columns: the titles of the rows' cells; a cell has a standing.
+
+    words: whether cells are words, not numbers.
+    """
+
+    title: str
+    first: str
+    columns: tuple[str, ...]
+    rows: tuple[RunRow, ...]
+    how: str
+    words: bool = False
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class RunsPage:
-    """Many traces on one page. columns: the titles of the rows' cells; a cell has a standing."""
+    """Many traces, or the parts of one, on one page."""
 
     title: str
     verdict: str
@@ -129,7 +145,5 @@ class RunsPage:
     headline: str
     reasons: tuple[str, ...]
     advice: tuple[str, ...]
-    columns: tuple[str, ...]
-    rows: tuple[RunRow, ...]
-    how: str
+    tables: tuple[RunsTable, ...]
     pages: tuple[tuple[str, Page], ...]

@@ -14,6 +14,7 @@ from specc.figures.switches import draw_switches
 from specc.pages.arbitration_part import arbitration_part
 from specc.pages.inline_svg import inline_svg
 from specc.pages.page import Block, Part, Plot, Table
+from specc.pages.requirements_part import requirements_part
 from specc.pages.sentences import ranged
 from verifier.report.diagnosis import Candidate, Diagnosis, FittedNumber, Refitted
 from verifier.report.examination import Examination
@@ -38,6 +39,7 @@ def explanations(examination: Examination, prefix: str) -> tuple[Part, ...]:
     """What speaks of the robot; `prefix` keeps the figures of several traces apart."""
     of = examination
     parts = (
+        requirements_part(of.requirements) if of.requirements else None,
         of.arbitration and arbitration_part(of.arbitration),
         of.diagnosis and diagnosis_part(of.diagnosis, of.switching, prefix),
         of.switching and switching_part(of.switching, prefix),

@@ -1,14 +1,15 @@
 """The reports of many recordings as one page: a table, then all together, then each by itself."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
 from specc.figures.quantities import number, seconds
-from specc.pages.page import Page, RunRow, RunsPage
+from specc.pages.page import Page, RunRow, RunsPage, RunsTable
 from specc.pages.report_page import SIGNS, gathered, rendered
+from specc.pages.scenario_tables import scenario_tables
 from specc.runs import Outcome, Pool, Runs, Unusable, counted, verifications
-from specc.texts.runs import advice_of, column_of, columns_of, reasons_of
+from specc.texts.runs import advice_of, column_of, columns_of, plain_of, reasons_of
 from specc.verifying import Verification
 from verifier.report.report import Coverage, Report, Verdict
 from verifier.report.wording import percent
@@ -27,19 +28,9 @@ def runs_page(runs: Runs) -> str:
 def gathered_runs(runs: Runs) -> RunsPage:
     """What the page says."""
     worst, outcomes = runs.verdict, runs.outcomes
-    columns = columns_of(outcomes)
     found = verifications(outcomes)
     anchors = {id(each): f"run-{k + 1}" for k, each in enumerate(found)}
     anchors |= {id(each): f"together-{k + 1}" for k, each in enumerate(runs.pools)}
-    how = (
-        "Departures are at the declared horizon, without the sensors' noise; bold ones exceed their"
-        " tolerance. The verdict is FAIL where one recording fails, else that on all together, for"
-        " which the windows of all are judged at once."
-    )
-    if _is_long(outcomes):
-        how += " The variables of recordings that passed are not drawn."
-    rows = tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes)
-    common = tuple(_report_row(each.report, anchors[id(each)], columns) for each in runs.pools)
     pages = [(anchors[id(e)], _pool_page(e, anchors[id(e)])) for e in runs.pools]
     pages += [(anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found]
     return RunsPage(
@@ -49,11 +40,29 @@ def gathered_runs(runs: Runs) -> RunsPage:
         headline=counted(outcomes),
         reasons=top_reasons(runs),
         advice=top_advice(runs),
-        columns=(*columns, "coverage", "judged", "lost"),
-        rows=(*rows, *common),
-        how=how,
+        tables=(*scenario_tables(runs, anchors), *_plain(runs, anchors)),
         pages=tuple(pages),
     )
+
+
+def _plain(runs: Runs, anchors: dict[int, str]) -> Iterator[RunsTable]:
+    """The table of recordings that are judged by one spec each."""
+    outcomes = plain_of(runs.outcomes)
+    if not outcomes:
+        return
+    columns = columns_of(outcomes)
+    how = (
+        "Departures are at the declared horizon, without the sensors' noise; bold ones exceed their"
+        " tolerance. The verdict is FAIL where one recording fails, else that on all together, for"
+        " which the windows of all are judged at once."
+    )
+    if _is_long(runs.outcomes):
+        how += " The variables of recordings that passed are not drawn."
+    rows = tuple(_row(each, anchors.get(id(each), ""), columns) for each in outcomes)
+    pools = [pool for pool in runs.pools if not pool.members[0].part]
+    common = tuple(_report_row(each.report, anchors[id(each)], columns) for each in pools)
+    titles = (*columns, "coverage", "judged", "lost")
+    yield RunsTable("Every trace", "trace", titles, (*rows, *common), how)
 
 
 def top_reasons(runs: Runs) -> tuple[str, ...]:
@@ -95,6 +104,7 @@ def _row(outcome: Outcome, anchor: str, columns: Sequence[str]) -> RunRow:
     if isinstance(outcome, Unusable):
         why = "; ".join(each.message for each in outcome.error.diagnostics)
         return RunRow("", outcome.source, "unusable", "!", (), why)
+    assert isinstance(outcome, Verification), "nodes have a table of their own"
     return _report_row(outcome.report, anchor, columns)
 
 

@@ -1,9 +1,30 @@
 """Many recordings as text: a table, and why those that did not pass did not."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from spec_schema.diagnostics import render
-from specc.runs import Outcome, Pool, Runs, Unusable, counted, source_of, unusable, verifications
+from specc.runs import (
+    Outcome,
+    Pool,
+    Runs,
+    Unusable,
+    counted,
+    recording_of,
+    source_of,
+    unusable,
+    verifications,
+)
+from specc.texts.scenario_runs import (
+    NODE_TITLES,
+    REQUIREMENT_TITLES,
+    node_row,
+    nodes_of,
+    pool_row,
+    required_of,
+    requirement_rows,
+)
+from specc.verifying import Verification
+from specc.verifying_architecture import NotJudged
 from verifier.report.examination_text import examination_text
 from verifier.report.layout import bullets, section, table, wrapped
 from verifier.report.report import Report, Verdict
@@ -11,21 +32,76 @@ from verifier.report.wording import percent, seconds, shown
 
 
 def runs_table(runs: Runs) -> str:
-    """A row for each recording and for all together, the reasons, the verdict and the counts."""
-    columns = columns_of(runs.outcomes)
-    header = ("recording", "verdict", *columns, "coverage", "judged", "lost")
-    rows = [_row(each, columns) for each in runs.outcomes]
-    rows += [_report_row(pool.report, columns) for pool in runs.pools]
+    """A row for each recording and for all together, the reasons, the verdict and the counts.
+
+    Of recordings of scenarios a row for each requirement and for each node.
+    """
     last = f"{'' if runs.verdict is None else f'{runs.verdict.upper()}  '}{counted(runs.outcomes)}"
     return "\n\n".join(
         part
         for part in (
-            table([header, *rows]),
+            *_scenarios(runs),
+            _plain(runs),
             section("why", [wrapped(reason) for reason in reasons_of(runs.outcomes)]),
+            section("next", [bullets(_advice(runs))]),
             *(section(title, blocks) for title, blocks in _together(runs)),
             last,
         )
         if part
+    )
+
+
+def _plain(runs: Runs) -> str:
+    """The table of recordings that are judged by one spec each."""
+    plain = plain_of(runs.outcomes)
+    if not plain:
+        return ""
+    columns = columns_of(plain)
+    header = ("recording", "verdict", *columns, "coverage", "judged", "lost")
+    rows = [_row(each, columns) for each in plain]
+    rows += [_report_row(pool.report, columns) for pool in runs.pools if not pool.members[0].part]
+    return table([header, *rows])
+
+
+def _scenarios(runs: Runs) -> Iterator[str]:
+    """What scenarios require, and their nodes."""
+    is_one = len({recording_of(each) for each in runs.outcomes}) == 1
+    required, nodes = required_of(runs.outcomes), nodes_of(runs.outcomes)
+    if required:
+        rows = [*requirement_rows(required, is_one=is_one)]
+        titles = REQUIREMENT_TITLES if is_one else ("recording", *REQUIREMENT_TITLES)
+        yield table([titles, *rows])
+    if nodes:
+        rows = [node_row(each, is_one=is_one) for each in nodes]
+        rows += [pool_row(pool) for pool in runs.pools if pool.members[0].part]
+        yield table([NODE_TITLES, *rows])
+
+
+def _advice(runs: Runs) -> tuple[str, ...]:
+    """What to do next about each node that is open; of one in several recordings: see together."""
+    return tuple(
+        f"{each.part}: {sentence}"
+        for each in nodes_of(runs.outcomes)
+        if isinstance(each, Verification) and each not in runs.members
+        if each.report.verdict is Verdict.INCONCLUSIVE
+        for sentence in each.report.advice
+    )
+
+
+def plain_of(outcomes: Sequence[Outcome]) -> tuple[Outcome, ...]:
+    """Recordings that are no scenarios', and those that can't be used."""
+    return tuple(
+        each
+        for each in outcomes
+        if isinstance(each, Unusable) or (isinstance(each, Verification) and not each.part)
+    )
+
+
+def told_text(runs: Runs) -> str:
+    """What is printed: a report in full where there is one, else the table."""
+    first = runs.outcomes[0] if runs.is_whole and len(runs.outcomes) == 1 else None
+    return (
+        examination_text(first.examination) if isinstance(first, Verification) else runs_table(runs)
     )
 
 
@@ -58,19 +134,27 @@ def advice_of(pool: Pool) -> tuple[str, ...]:
 def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     """Why each recording that did not pass did not: `run.mcap, FAIL: …`, what decides first."""
     told = sorted((each for each in outcomes if _why(each)), key=_rank)
-    return tuple(f"{source_of(each)}{_word(each)}: {_why(each)}" for each in told)
+    is_one = len({recording_of(each) for each in outcomes}) == 1
+    return tuple(f"{_name(each, is_one=is_one)}{_word(each)}: {_why(each)}" for each in told)
+
+
+def _name(outcome: Outcome, *, is_one: bool) -> str:
+    """The recording, and the part of it; the part alone where there is one recording of several."""
+    if is_one and isinstance(outcome, Verification) and outcome.part:
+        return outcome.part
+    return source_of(outcome)
 
 
 def _rank(outcome: Outcome) -> int:
     """Those that fail first, then those that can't be used."""
-    if isinstance(outcome, Unusable):
+    if not isinstance(outcome, Verification):
         return 1
     return 0 if outcome.report.verdict is Verdict.FAIL else 2
 
 
 def _word(outcome: Outcome) -> str:
-    if isinstance(outcome, Unusable):
-        return " can't be used"
+    if not isinstance(outcome, Verification):
+        return " can't be used" if isinstance(outcome, Unusable) else ", not judged"
     return f", {outcome.report.verdict.upper()}"
 
 
@@ -94,6 +178,7 @@ def _row(outcome: Outcome, columns: Sequence[str]) -> tuple[str, ...]:
     if isinstance(outcome, Unusable):
         first = outcome.error.diagnostics[0]
         return (outcome.source, f"can't be used: {first.code}", *("-" for _ in columns), "", "", "")
+    assert isinstance(outcome, Verification), "nodes have a table of their own"
     return _report_row(outcome.report, columns)
 
 
@@ -115,5 +200,7 @@ def _why(outcome: Outcome) -> str:
     """The first reason of what did not pass; empty for what did."""
     if isinstance(outcome, Unusable):
         return "; ".join(d.message for d in outcome.error.diagnostics[:3])
+    if isinstance(outcome, NotJudged):
+        return outcome.why
     report = outcome.report
     return "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])

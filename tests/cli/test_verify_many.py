@@ -184,7 +184,13 @@ def test_one_report_holds_all_recordings(capsys: pytest.CaptureFixture[str]) -> 
 
     record = json.loads(Path("r.json").read_text())
     assert record["verdict"] == "fail"
-    assert record["counts"] == {"fail": 1, "inconclusive": 0, "pass": 1, "unusable": 1}
+    assert record["counts"] == {
+        "fail": 1,
+        "inconclusive": 0,
+        "pass": 1,
+        "not_judged": 0,
+        "unusable": 1,
+    }
     assert [run["trace"]["source"] for run in record["runs"]] == ["good.csv", "bad.csv", "torn.csv"]
     assert record["runs"][2]["diagnostics"][0]["code"].startswith("V3")
     suites = ET.fromstring(Path("r.junit.xml").read_text())  # noqa: S314  our own
@@ -270,9 +276,9 @@ def test_the_spec_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
     real = specc.runs.program_for_verify
 
-    def counted(path: Path) -> object:
+    def counted(path: Path, **named: bool) -> object:
         calls.append(path)
-        return real(path)
+        return real(path, **named)
 
     monkeypatch.setattr(specc.runs, "program_for_verify", counted)
     outcomes: Iterator[object] = specc.runs.verify_each(

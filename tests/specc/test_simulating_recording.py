@@ -19,7 +19,7 @@ from runtime.arrays import Array
 from runtime.recording.scenario_run import recorded_run
 from runtime.run import Run, run
 from specc.cli import main
-from specc.verifying_recording import attached_architectures
+from specc.run_standard import carried_by
 from tests.runtime.first_light import first_light, short_run
 from verifier.architectures.gathering import Gathered
 from verifier.architectures.recorded import read_nodes
@@ -163,10 +163,13 @@ def test_records_read_from_the_file_are_those_gathered_in_the_run(file: Path) ->
     gathered = Gathered(scenario.robots[0].architecture, 0, scenario.step)
     run(scenario, observer=gathered)
 
-    read = read_nodes(file, attached_architectures(file))["r"]
+    carried = carried_by(file)
+    assert carried is not None
+    robots = {robot.name: robot.architecture for robot in carried.robots}
+    read = read_nodes(file, robots, scenario.step)["r"]
 
     for one, other in zip(read, gathered.records(), strict=True):
-        assert np.allclose(one.times, other.times, rtol=0.0, atol=1e-9)
+        assert np.array_equal(one.times, other.times)
         assert one.columns.keys() == other.columns.keys()
         for name, column in one.columns.items():
             assert np.allclose(column, other.columns[name], rtol=1e-12), name
@@ -184,7 +187,7 @@ def test_verify_judges_each_node_by_its_own_spec(
     found = json.loads(capsys.readouterr().out)
 
     specs = [each["spec"]["name"] for each in found["runs"]]
-    assert specs == ["back_off", "seek_light", "safe_first"]
+    assert specs == ["first_light", "back_off", "seek_light", "safe_first"]
 
 
 def test_a_recording_that_lies_about_its_choices_fails(recording: bytes, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from runtime.architecture import Architecture
 from runtime.arrays import Array, Booleans
 from runtime.scheduler.environment import Delivery
 from runtime.scheduler.observer import Event, Tick
-from verifier.architectures.nodes import NodeRecord
+from verifier.architectures.nodes import NodeRecord, held_back
 from verifier.architectures.way import has_its_way
 
 
@@ -19,7 +19,7 @@ class Gathered:
     def __init__(self, architecture: Architecture, robot: int, step: float) -> None:
         self._architecture, self._robot, self._step = architecture, robot, step
         self._ticks: list[list[tuple[int, Array, float]]] = [[] for _ in architecture.nodes]
-        self._acts: list[tuple[int, Booleans]] = []
+        self._acts: list[tuple[int, Booleans, Array]] = []
 
     def sensed(self, instant: int, delivery: Delivery) -> None:
         """Do nothing: nodes tell what they sampled."""
@@ -32,9 +32,8 @@ class Gathered:
 
     def acting(self, instant: int, robot: int, acts: Booleans, weights: Array) -> None:
         """Keep who acts."""
-        del weights
         if robot == self._robot:
-            self._acts.append((instant, acts.copy()))
+            self._acts.append((instant, acts.copy(), weights.copy()))
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
         """Do nothing: who acts is told apart."""
@@ -45,12 +44,15 @@ class Gathered:
     def records(self) -> tuple[NodeRecord, ...]:
         """The record of each node, in their order."""
         count = len(self._architecture.nodes)
-        instants = np.array([-1, *(instant for instant, _ in self._acts)])
-        acts = np.array([np.zeros(count, dtype=np.bool_), *(each for _, each in self._acts)])
-        free = has_its_way(self._architecture, acts)
-        return tuple(self._record(node, instants, free[:, node]) for node in range(count))
+        instants = np.array([-1, *(instant for instant, _, _ in self._acts)])
+        acts = np.array([np.zeros(count, dtype=np.bool_), *(each for _, each, _ in self._acts)])
+        weights = np.array([np.zeros(count), *(each for _, _, each in self._acts)])
+        free = has_its_way(self._architecture, acts, weights)
+        return tuple(
+            self._record(node, instants, acts[:, node], free[:, node]) for node in range(count)
+        )
 
-    def _record(self, place: int, instants: Array, free: Booleans) -> NodeRecord:
+    def _record(self, place: int, instants: Array, acts: Booleans, free: Booleans) -> NodeRecord:
         node = self._architecture.nodes[place]
         ticks = self._ticks[place]
         at = np.array([instant for instant, _, _ in ticks], dtype=np.int64)
@@ -58,14 +60,15 @@ class Gathered:
         rows = np.array([row[: len(names)] for _, row, _ in ticks]).reshape(len(ticks), len(names))
         columns = {name: rows[:, i] for i, name in enumerate(names)}
         # Who acts is told after the last that was told at or before the tick.
-        here = free[np.maximum(np.searchsorted(instants, at, "right") - 1, 0)]
+        since = np.maximum(np.searchsorted(instants, at, "right") - 1, 0)
+        back = held_back(self._architecture, place, columns, acts[since], free[since])
         is_arbiter = node.arbiter >= 0
         times: Array = np.asarray(at, dtype=np.float64) * self._step
         return NodeRecord(
             name=node.name,
             times=times,
             columns=columns,
-            free=np.ones(at.size, dtype=np.bool_) if is_arbiter else here,
+            held_back={} if is_arbiter else back,
             chosen=np.array([chosen for _, _, chosen in ticks]) if is_arbiter else None,
         )
 

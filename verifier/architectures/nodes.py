@@ -4,21 +4,30 @@ A behavior samples its states at its ticks: as a trace they are the measured one
 judged where it had its way. An arbiter's inputs and choice at its ticks are its decisions.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Final, final
 
 import numpy as np
 
 from runtime.arbiter import Arbiter
+from runtime.architecture import Architecture, Outside
 from runtime.arrays import Array, Booleans
 from runtime.code import Code
 from runtime.program import Binding, Control, Kind, Program, State, Unit
 from verifier.arbitration.judging import judge_arbiter
 from verifier.arbitration.reader import CHOICE
-from verifier.examination import examine
+from verifier.architectures.telling import (
+    BEYOND_DOMAIN,
+    INHIBITED,
+    OVERRULED,
+    told_of_node,
+    without_logs,
+)
+from verifier.examination import explain
+from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.report.examination import Examination
-from verifier.traces.trace import Series, Trace
+from verifier.traces.trace import Loss, Series, Trace
 
 HAS_ITS_WAY: Final = "has_its_way"
 """The signal that `judge_when` of a recorded behavior reads."""
@@ -31,30 +40,102 @@ class NodeRecord:
     """The ticks of one node of one robot.
 
     times: (T,) seconds, strictly increasing. columns: (T,) SI by the names of what it sampled: of
-    a behavior states and controls, of an arbiter reads and controls. free: (T,) where it had its
-    way from that tick on. chosen: (T,) of an arbiter, -1 where it chose nothing.
+    a behavior states and controls, of an arbiter reads and controls. held_back: by cause, (T,)
+    from which ticks on what the robot does is not, or not fully, its doing. chosen: (T,) of an
+    arbiter, -1 where it chose nothing. losses: of the recording.
     """
 
     name: str
     times: Array
     columns: dict[str, Array]
-    free: Booleans
+    held_back: dict[str, Booleans] = field(default_factory=dict)
     chosen: Array | None = None
+    losses: tuple[Loss, ...] = ()
+
+    @property
+    def free(self) -> Booleans:
+        """(T,) where it had its way from that tick on."""
+        out = np.zeros(self.times.size, dtype=np.bool_)
+        for flags in self.held_back.values():
+            out |= flags
+        return ~out
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class NodeExamination:
+    """What a behavior's record shows, and the program and judgement that it rests on."""
+
+    program: Program
+    examination: Examination
+    judgement: Judgement
+
+
+def held_back(
+    architecture: Architecture,
+    place: int,
+    columns: Mapping[str, Array],
+    acts: Booleans,
+    free: Booleans,
+) -> dict[str, Booleans]:
+    """By cause, at which ticks (T,) a behavior has not its way, each tick under its first cause.
+
+    acts, free: (T,) whether it acts, and whether nobody else moves what it moves.
+    """
+    found = {INHIBITED: ~acts, OVERRULED: acts & ~free}
+    taken = ~free
+    for name, flags in _clipped(architecture, place, columns).items():
+        found[f"{name} {BEYOND_DOMAIN}"] = flags & ~taken
+        taken = taken | flags
+    return found
+
+
+def _clipped(
+    architecture: Architecture, place: int, columns: Mapping[str, Array]
+) -> dict[str, Booleans]:
+    """By state, where its reading stands at an edge of its domain that the signal can leave."""
+    node = architecture.nodes[place]
+    if node.behavior < 0:
+        return {}
+    states = {state.name: state for state in architecture.programs[node.behavior].states}
+    found: dict[str, Booleans] = {}
+    for wire in node.inputs:
+        state = states.get(wire.entry)
+        if state is None or wire.signal < 0 or wire.outside is not Outside.CLIP:
+            continue
+        if state.kind is not Kind.CONTINUOUS:
+            continue
+        signal, values = architecture.board[wire.signal], columns[state.name]
+        ends = sorted((wire.scale * signal.low, wire.scale * signal.high))
+        below = (values <= state.low) & (ends[0] < state.low)
+        found[state.name] = below | ((values >= state.high) & (ends[1] > state.high))
+    return found
 
 
 def examine_behavior(
     program: Program, record: NodeRecord, source: str, *, only_verdict: bool = False
-) -> Examination:
+) -> NodeExamination:
     """The behavior judged where it had its way; its own `judge_when` is for other logs.
 
     Raises:
         SpecError: the spec does not say what it would be verified against (V351).
     """
+    judged, trace = _as_log(program, record, source)
+    judgement = judgement_of(judged, trace)
+    judgement = replace(
+        judgement, report=told_of_node(judgement.report, record.times, record.held_back)
+    )
+    made = explain(judged, trace, judgement, _in_silence, only_verdict=only_verdict)
+    return NodeExamination(judged, without_logs(made), replace(judgement, study=None))
+
+
+def _as_log(program: Program, record: NodeRecord, source: str) -> tuple[Program, Trace]:
+    """The record as a log, and the program as one that is judged by it."""
     variables: tuple[State | Control, ...] = (*program.states, *program.controls)
     named = [each for each in variables if each.name in record.columns]
     periods = {s.name: s.high - s.low for s in program.states if s.kind is Kind.PERIODIC}
     series = {each.name: _series(each.name, record, periods) for each in named}
-    free = record.free.astype(float)
+    free = _within_modes(program, record).astype(float)
     series[HAS_ITS_WAY] = Series(HAS_ITS_WAY, record.times, free, HAS_ITS_WAY, RECORDED)
     bindings = [_binding(each.name, each.unit, each.origin) for each in named]
     judged = replace(
@@ -62,7 +143,20 @@ def examine_behavior(
         bindings=(*bindings, _binding(HAS_ITS_WAY, Unit("1", 1.0), program.source.file)),
         judge_when=Code(HAS_ITS_WAY),
     )
-    return examine(judged, _trace(series, record, source), only_verdict=only_verdict)
+    return judged, _trace(series, record, source)
+
+
+def _within_modes(program: Program, record: NodeRecord) -> Booleans:
+    """Where it had its way, without a step into a tick where it has not that changes the mode.
+
+    A mode is changed at a tick by what is read there, and there it is no longer judged.
+    """
+    free = record.free
+    modes = record.columns.get(program.field.mode)
+    if modes is None or not free.size:
+        return free
+    changes = np.append(np.diff(modes) != 0.0, False)
+    return free & ~(changes & np.append(~free[1:], False))
 
 
 def examine_decisions(
@@ -100,4 +194,8 @@ def _binding(name: str, unit: Unit, origin: str) -> Binding:
 def _trace(series: dict[str, Series], record: NodeRecord, source: str) -> Trace:
     start = float(record.times[0]) if record.times.size else 0.0
     moved = {name: replace(each, times=each.times - start) for name, each in series.items()}
-    return Trace(f"{source}: {record.name}", moved, {}, start, (), ())
+    return Trace(f"{source}: {record.name}", moved, {}, start, record.losses, ())
+
+
+def _in_silence(_phase: str) -> None:
+    """Nobody watches."""

@@ -3,7 +3,7 @@
 Recordings: `runtime.recording.nodes`. Times count from the beginning of the run.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -21,43 +21,49 @@ from runtime.recording.nodes import (
     topic_of,
 )
 from runtime.recording.tables import Field
-from verifier.architectures.nodes import NodeRecord
+from verifier.architectures.log import RunLog, open_run
+from verifier.architectures.nodes import NodeRecord, held_back
 from verifier.architectures.way import has_its_way
-from verifier.traces.files.log import LogFile, MessageLog, Messages, Wanted
-from verifier.traces.files.open_log import open_log
-from verifier.traces.messages.columns import Column
-from verifier.traces.messages.paths import MessagePath, parse_path, path_text
 
-NANOSECONDS: Final = 1e9
 ACTS: Final = "acts"
+WEIGHT: Final = "weight"
 CHOSEN: Final = "choice"
+WHO_ACTS: Final = (Field(ACTS, is_flag=True), Field(WEIGHT))
 
 
-def read_nodes(path: Path, robots: Mapping[str, Architecture]) -> dict[str, tuple[NodeRecord, ...]]:
+def read_nodes(
+    path: Path, robots: Mapping[str, Architecture], step: float = 0.0
+) -> dict[str, tuple[NodeRecord, ...]]:
     """By robot, the record of each node in the order of nodes; empty where nothing was recorded.
 
     Raises:
         SpecError: the recording can't be opened (V301, V302).
     """
-    wanted = {
-        topic: tuple(parse_path(path_text(topic, (field.name,))) for field in fields)
+    return records_of(open_run(path, topics_of_nodes(robots), step), robots)
+
+
+def topics_of_nodes(robots: Mapping[str, Architecture]) -> dict[str, list[Field]]:
+    """What is read of the nodes of these robots, by topic."""
+    return {
+        topic: fields
         for robot, architecture in robots.items()
         for node in architecture.nodes
         for topic, fields in _topics(robot, architecture, node).items()
     }
-    log = _opened(path, wanted)
+
+
+def records_of(
+    log: RunLog, robots: Mapping[str, Architecture]
+) -> dict[str, tuple[NodeRecord, ...]]:
+    """By robot, the record of each node in the order of nodes; empty where nothing was recorded."""
     return {
         robot: tuple(_records(log, robot, architecture)) for robot, architecture in robots.items()
     }
 
 
-def _opened(path: Path, wanted: Mapping[str, tuple[MessagePath, ...]]) -> LogFile:
-    return open_log(path, Wanted(wanted, frozenset()))
-
-
 def _topics(robot: str, architecture: Architecture, node: Node) -> dict[str, list[Field]]:
     """What is read of a node, by topic."""
-    found = {ACTING: [Field(ACTS, is_flag=True)]}
+    found = {ACTING: list(WHO_ACTS)}
     if node.behavior >= 0:
         program = architecture.programs[node.behavior]
         found[STATE] = [Field(s.name, s.unit, s.values) for s in program.states]
@@ -69,29 +75,51 @@ def _topics(robot: str, architecture: Architecture, node: Node) -> dict[str, lis
     return {topic_of(robot, node.name, what): fields for what, fields in found.items() if fields}
 
 
-def _records(log: LogFile, robot: str, architecture: Architecture) -> list[NodeRecord]:
-    instants, free = _free(log, robot, architecture)
+def _records(log: RunLog, robot: str, architecture: Architecture) -> list[NodeRecord]:
+    instants, acts, weights = _acting(log, robot, architecture)
+    free = has_its_way(architecture, acts, weights)
     return [
-        _record(log, robot, architecture, place, instants, free[:, place])
+        _record(log, robot, architecture, place, instants, acts[:, place], free[:, place])
         for place in range(len(architecture.nodes))
     ]
 
 
 def _record(
-    log: LogFile,
+    log: RunLog,
     robot: str,
     architecture: Architecture,
     place: int,
     instants: Array,
+    acts: Booleans,
     free: Booleans,
 ) -> NodeRecord:
     node = architecture.nodes[place]
+    times, columns = _sampled(log, robot, architecture, node)
+    chosen = columns.pop(CHOSEN, None) if node.arbiter >= 0 else None
+    if chosen is not None:
+        chosen = np.where(np.isfinite(chosen), chosen, -1.0)
+    since = np.maximum(np.searchsorted(instants, times, "right") - 1, 0)
+    back = held_back(architecture, place, columns, acts[since], free[since])
+    return NodeRecord(
+        name=f"{robot}.{node.name}",
+        times=times,
+        columns=columns,
+        held_back={} if node.arbiter >= 0 else back,
+        chosen=chosen,
+        losses=log.losses,
+    )
+
+
+def _sampled(
+    log: RunLog, robot: str, architecture: Architecture, node: Node
+) -> tuple[Array, dict[str, Array]]:
+    """What a node sampled, and what an arbiter chose, at its ticks."""
     times: Array | None = None
     columns: dict[str, Array] = {}
     for topic, fields in _topics(robot, architecture, node).items():
         if topic == topic_of(robot, node.name, ACTING):
             continue
-        here, found = _columns(log, topic, fields)
+        here, found = log.columns(topic, fields)
         if times is None:
             times, columns = here, found
             continue
@@ -100,61 +128,22 @@ def _record(
         columns = {name: column[mine] for name, column in columns.items()}
         columns |= {name: column[its] for name, column in found.items()}
         times = shared
-    times = np.zeros(0) if times is None else times
-    chosen = columns.pop(CHOSEN, None) if node.arbiter >= 0 else None
-    if chosen is not None:
-        chosen = np.where(np.isfinite(chosen), chosen, -1.0)
-    acts = free[np.maximum(np.searchsorted(instants, times, "right") - 1, 0)]
-    is_arbiter = node.arbiter >= 0
-    return NodeRecord(
-        name=f"{robot}.{node.name}",
-        times=times,
-        columns=columns,
-        free=np.ones(times.size, dtype=np.bool_) if is_arbiter else acts,
-        chosen=chosen,
-    )
+    return np.zeros(0) if times is None else times, columns
 
 
-def _free(log: LogFile, robot: str, architecture: Architecture) -> tuple[Array, Booleans]:
-    """When who acts changes, and which nodes (T, nodes) have their way from then on."""
+def _acting(log: RunLog, robot: str, architecture: Architecture) -> tuple[Array, Booleans, Array]:
+    """When who acts changes, who acts (T, nodes) from then on, and the weights of choices."""
     told = []
     for node in architecture.nodes:
-        times, found = _columns(log, topic_of(robot, node.name, ACTING), [Field(ACTS)])
-        told.append((times, found[ACTS] > 0.0))
-    instants = np.unique(np.concatenate([[-1.0], *(times for times, _ in told)]))
+        times, found = log.columns(topic_of(robot, node.name, ACTING), WHO_ACTS)
+        told.append((times, found[ACTS] > 0.0, found[WEIGHT]))
+    instants = np.unique(np.concatenate([[-1.0], *(times for times, _, _ in told)]))
     acts = np.zeros((instants.size, len(told)), dtype=np.bool_)
-    for place, (times, flags) in enumerate(told):
+    weights = np.zeros(acts.shape)
+    for place, (times, flags, numbers) in enumerate(told):
         if times.size:
             last = np.searchsorted(times, instants, "right") - 1
-            acts[:, place] = np.where(last >= 0, flags[np.maximum(last, 0)], False)  # noqa: FBT003
-    return instants, has_its_way(architecture, acts)
-
-
-def _columns(log: LogFile, topic: str, fields: Sequence[Field]) -> tuple[Array, dict[str, Array]]:
-    """The times of a topic's messages, strictly increasing, and its fields in SI."""
-    empty = np.zeros(0), {field.name: np.zeros(0) for field in fields}
-    streams = log.streams if isinstance(log, MessageLog) else ()
-    stream = next((s for s in streams if s.channel.topic == topic and s.values), None)
-    if stream is None or stream.values is None:
-        return empty
-    readable = np.flatnonzero(stream.values.readable)
-    seconds = _seconds(stream, readable)
-    times, rows = np.unique(seconds, return_index=True)
-    found = {}
-    for field in fields:
-        column = stream.values.columns.get(path_text(topic, (field.name,)))
-        if column is None:
-            return empty
-        found[field.name] = _in_si(field, column)[rows]
-    return times, found
-
-
-def _seconds(stream: Messages, readable: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Array:
-    return np.asarray(stream.times[: readable.max(initial=-1) + 1][readable] / NANOSECONDS)
-
-
-def _in_si(field: Field, column: Column) -> Array:
-    if field.labels and column.texts is not None:
-        places = {label: float(place) for place, label in enumerate(field.labels)}
-        return np.array([places.get(text or "", np.nan) for text in column.texts])
-    return column.numbers * field.unit.scale
+            begun, at = last >= 0, np.maximum(last, 0)
+            acts[:, place] = begun & flags[at]
+            weights[:, place] = np.where(begun, numbers[at], 0.0)
+    return instants, acts, weights

@@ -4,32 +4,48 @@ Else what the robot does is not its doing: it is inhibited, suppressed by one th
 on a channel, or blended with others (thesis, section 3.2.2).
 """
 
+from typing import Final
+
 import numpy as np
 
 from runtime.architecture import Architecture, Channel, Way
-from runtime.arrays import Booleans
+from runtime.arrays import Array, Booleans
 
-ALONE_ABOVE = frozenset({Way.PRIORITY, Way.EXCLUSIVE})
-"""The first of those that act has the channel for itself."""
+NEARLY_ALL: Final = 0.99
+"""Who has so much of the weight in a blend has its way: the others move next to nothing."""
 
 
-def has_its_way(architecture: Architecture, acts: Booleans) -> Booleans:
+def has_its_way(architecture: Architecture, acts: Booleans, weights: Array) -> Booleans:
     """Of who acts (..., nodes) those that have their way, on every channel that they reach.
 
-    A node that reaches no channel has its way where it acts.
+    weights: (..., nodes) how strongly choices in effect name each; they count in a blend. A node
+    that reaches no channel has its way where it acts.
     """
     free = acts.copy()
     for channel in architecture.channels:
         for place, node in enumerate(channel.resolution.nodes):
-            rivals = _rivals(channel, place)
-            if rivals:
-                free[..., node] &= ~np.any(acts[..., rivals], axis=-1)
+            free[..., node] &= _is_alone(channel, place, acts, weights)
     return free
 
 
-def _rivals(channel: Channel, place: int) -> list[int]:
-    """Who must not act on the channel, for the node at `place` to have it for itself."""
+def _is_alone(channel: Channel, place: int, acts: Booleans, weights: Array) -> Booleans:
+    """Where the node at `place` has the channel for itself, if it acts."""
     nodes = channel.resolution.nodes
-    if channel.resolution.way in ALONE_ABOVE:
-        return list(nodes[:place])
-    return [other for i, other in enumerate(nodes) if i != place]
+    rivals = [other for i, other in enumerate(nodes) if i != place]
+    match channel.resolution.way:
+        case Way.PRIORITY | Way.EXCLUSIVE:
+            rivals = list(nodes[:place])
+        case Way.BLEND if channel.resolution.arbiter >= 0:
+            counted = np.where(acts, weights, 0.0)
+            own, others = counted[..., nodes[place]], counted[..., rivals].sum(axis=-1)
+            # Where nobody has a weight, all that act count alike.
+            told: Booleans = np.where(
+                own + others > 0.0,
+                own >= NEARLY_ALL * (own + others),
+                ~np.any(acts[..., rivals], axis=-1),
+            )
+            return told
+        case _:
+            pass
+    alone: Booleans = ~np.any(acts[..., rivals], axis=-1)
+    return alone

@@ -8,6 +8,7 @@ from verifier.report.diagnosis import Diagnosis
 from verifier.report.features import Features
 from verifier.report.limits import Limits
 from verifier.report.report import Report
+from verifier.report.requirement_results import RequirementResult
 from verifier.report.scores import Scores
 from verifier.report.switching import Switching
 
@@ -20,6 +21,7 @@ class Examination:
     switching: the changes of mode. diagnosis: why the robot departs. limits: what this trace
     can't tell, and what it would have caught. features: the robot's topology beside the spec's.
     scores: those of similarity, for comparison only. arbitration: of an arbiter, how it decides.
+    requirements: of a scenario's run, what is required and whether it holds.
     origins: where in the spec, `file:line:column`, each thing stands that a finding may be about:
     its name for a state or control, `fidelity` for what is demanded of the robot.
     """
@@ -32,3 +34,4 @@ class Examination:
     scores: Scores | None = None
     origins: dict[str, str] = field(default_factory=dict)
     arbitration: Arbitration | None = None
+    requirements: tuple[RequirementResult, ...] = ()

@@ -10,6 +10,7 @@ from verifier.report.arbitration_record import arbitration_record
 from verifier.report.examination import Examination
 from verifier.report.findings import findings_of
 from verifier.report.record import as_json
+from verifier.report.requirement_record import requirements_record
 from verifier.report.section_records import (
     diagnosis_record,
     features_record,
@@ -34,5 +35,6 @@ def examination_record(examination: Examination) -> dict[str, object]:
         "features": of.features and features_record(of.features),
         "scores": of.scores and scores_record(of.scores),
         "arbitration": of.arbitration and arbitration_record(of.arbitration),
+        "requirements": requirements_record(of.requirements) or None,
         "findings": [finding_record(each) for each in findings_of(of)],
     }

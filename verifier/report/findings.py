@@ -4,7 +4,7 @@ They are what CI systems show beside the code. Errors are what makes a verdict F
 makes it INCONCLUSIVE or what a section finds wrong, notes the rest.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, final
@@ -14,6 +14,7 @@ from verifier.report.diagnosis import Diagnosis
 from verifier.report.examination import Examination
 from verifier.report.features import Features, FeatureStanding
 from verifier.report.report import Report, Standing, VariableResult, Verdict
+from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.situations import exceeded
 from verifier.report.switching import Switching, Way
 from verifier.report.wording import exact, percent, quantity, seconds, span
@@ -39,10 +40,12 @@ class Rule(StrEnum):
     SWITCHING = "mode-change"
     DECISIONS = "decisions-differ"
     THRESHOLD = "threshold"
+    REQUIREMENT = "requirement"
     FEATURE = "feature-differs"
     DIAGNOSIS = "diagnosis"
     NOT_TOLD = "not-told"
     LOSS = "lost-in-the-log"
+    NOT_JUDGED = "not-judged"
     UNUSABLE = "trace-unusable"
 
 
@@ -54,10 +57,12 @@ MEANINGS: Final = {
     Rule.SWITCHING: "A change of mode comes at another time, or leads elsewhere.",
     Rule.DECISIONS: "The robot decides otherwise than its arbiter's spec.",
     Rule.THRESHOLD: "A threshold by which the robot decides is not where the spec has it.",
+    Rule.REQUIREMENT: "A run does not do what its scenario requires, or is too short to tell.",
     Rule.FEATURE: "An attractor, saddle or cycle of the robot is not where the spec has it.",
     Rule.DIAGNOSIS: "What would explain that the robot departs from its spec.",
     Rule.NOT_TOLD: "Something about the robot that this trace leaves open.",
     Rule.LOSS: "Something in the log could not be used.",
+    Rule.NOT_JUDGED: "A node of a recording of which nothing can be said.",
     Rule.UNUSABLE: "A trace, or the spec that it is judged by, can't be used.",
 }
 """A sentence for each rule."""
@@ -81,6 +86,7 @@ def findings_of(examination: Examination) -> tuple[Finding, ...]:
         *_of_report(examination.report, examination.origins.get("fidelity", "")),
         *_of_switching(examination.switching),
         *_of_arbitration(examination.report, examination.arbitration),
+        *_of_requirements(examination.requirements),
         *_of_features(examination.features),
         *_of_diagnosis(examination.diagnosis),
         *_of_limits(examination),
@@ -145,6 +151,14 @@ def _of_arbitration(report: Report, of: Arbitration | None) -> Iterator[Finding]
             own = exact(each.value, each.unit)
             message = f"the robot decides {each.comparison} at {at}, the spec at {own}"
             yield Finding(Rule.THRESHOLD, Level.WARNING, each.name, message, each.origin)
+
+
+def _of_requirements(results: Sequence[RequirementResult]) -> Iterator[Finding]:
+    levels = {Outcome.VIOLATED: Level.ERROR, Outcome.OPEN: Level.WARNING}
+    for each in results:
+        if each.outcome in levels:
+            message = f"{each.text}: {each.sentence}"
+            yield Finding(Rule.REQUIREMENT, levels[each.outcome], each.text, message, each.origin)
 
 
 def _of_way(way: Way, level: Level, what: str) -> Finding:

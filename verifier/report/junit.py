@@ -26,13 +26,16 @@ def as_junit(
     examinations: Sequence[Examination],
     unusable: Sequence[tuple[str, str]] = (),
     parts: Collection[Examination] = (),
+    skipped: Sequence[tuple[str, str]] = (),
 ) -> bytes:
     """All traces as one document; `unusable` are those without a report, `(source, why)`.
 
     parts: those examinations that are also judged together, as another one of them.
+    skipped: what could not be judged, `(source, why)`, which makes no verdict worse.
     """
     suites = [_suite(each, is_part=each in parts) for each in examinations]
-    suites += [_unusable(source, why) for source, why in unusable]
+    suites += [_unjudged(source, why, "error", "unusable") for source, why in unusable]
+    suites += [_unjudged(source, why, "skipped") for source, why in skipped]
     root = ET.Element("testsuites", {"name": "specc verify", **_counts(suites)})
     root.extend(suites)
     ET.indent(root)
@@ -89,10 +92,10 @@ def _bare_case(name: str, classname: str, origin: str) -> ET.Element:
     return ET.Element("testcase", attributes)
 
 
-def _unusable(source: str, why: str) -> ET.Element:
+def _unjudged(source: str, why: str, outcome: str, kind: str = "") -> ET.Element:
     case = _bare_case("can be judged", "specc verify", "")
     first = (clean(why).splitlines() or [""])[0]
-    told = ET.SubElement(case, "error", {"message": first, "type": "unusable"})
+    told = ET.SubElement(case, outcome, {"message": first} | ({"type": kind} if kind else {}))
     told.text = clean(why)
     suite = ET.Element("testsuite", {"name": clean(source), **_counted([case])})
     suite.append(case)

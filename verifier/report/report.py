@@ -5,7 +5,7 @@ W is the number of judged windows. A value in the user's unit is `value / unit.s
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import final
+from typing import Final, final
 
 from runtime.arrays import Array, Integers
 from runtime.program import Unit
@@ -19,6 +19,9 @@ class Verdict(StrEnum):
     PASS = "pass"  # noqa: S105  # the word of the verdict
     FAIL = "fail"
     INCONCLUSIVE = "inconclusive"
+
+
+WORST_FIRST: Final = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)
 
 
 @final

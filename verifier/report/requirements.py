@@ -1,12 +1,13 @@
 """What a spec demands of a robot, one by one, and whether this trace shows it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
 from verifier.report.examination import Examination
 from verifier.report.findings import departs
 from verifier.report.report import Coverage, Report, Standing, Verdict
+from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.switching import Switching
 from verifier.report.wording import percent, quantity, seconds
 
@@ -14,6 +15,12 @@ OVERALL: Final = {
     Verdict.PASS: Standing.WITHIN,
     Verdict.FAIL: Standing.EXCEEDED,
     Verdict.INCONCLUSIVE: Standing.UNDECIDED,
+}
+
+OUTCOMES: Final = {
+    Outcome.SATISFIED: Standing.WITHIN,
+    Outcome.VIOLATED: Standing.EXCEEDED,
+    Outcome.OPEN: Standing.UNDECIDED,
 }
 
 
@@ -29,7 +36,7 @@ class Requirement:
 
 
 def requirements_of(examination: Examination) -> tuple[Requirement, ...]:
-    """The verdict as a whole, then each variable, the region, each change of mode."""
+    """The verdict as a whole, then each variable, the region, each change of mode; or of a run."""
     report = examination.report
     fidelity = examination.origins.get("fidelity", "")
     reasons = "\n".join(report.reasons)
@@ -38,6 +45,7 @@ def requirements_of(examination: Examination) -> tuple[Requirement, ...]:
         *_variables(report),
         *_region(report.coverage, fidelity),
         *_ways(examination.switching),
+        *_of_run(examination.requirements),
     )
 
 
@@ -64,3 +72,9 @@ def _ways(switching: Switching | None) -> Iterator[Requirement]:
         )
         name = f"{switching.mode if switching else ''}: {way.source} to {way.target}"
         yield Requirement(name, way.standing, message, way.origin)
+
+
+def _of_run(results: Sequence[RequirementResult]) -> Iterator[Requirement]:
+    for result in results:
+        standing = OUTCOMES[result.outcome]
+        yield Requirement(result.text, standing, result.sentence, result.origin)

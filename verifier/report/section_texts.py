@@ -7,6 +7,7 @@ from verifier.report.examination import Examination
 from verifier.report.features import FeatureNumber, Features
 from verifier.report.layout import INDENT, bullets, section, table
 from verifier.report.limits import Limits
+from verifier.report.requirement_record import requirements_text
 from verifier.report.scores import Scores, VariableScores
 from verifier.report.switching import Switching
 from verifier.report.why import untaken, why
@@ -19,6 +20,7 @@ def section_texts(examination: Examination) -> tuple[str, ...]:
     """The sections that were computed and have something to say, in the order of reading."""
     of = examination
     texts = (
+        requirements_text(of.requirements) if of.requirements else "",
         "" if of.arbitration is None else arbitration_text(of.arbitration),
         "" if of.diagnosis is None else _diagnosis(of.diagnosis, of.switching),
         "" if of.switching is None else _switching(of.switching),

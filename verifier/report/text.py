@@ -79,10 +79,10 @@ def _short(figure: HorizonFigure, result: VariableResult) -> str:
 
 def _seen(report: Report) -> str:
     trace = report.trace
-    windows = f"{len(report.starts)} windows of {number(report.horizon)} s"
+    windows = f", {len(report.starts)} windows of {number(report.horizon)} s"
     if report.horizon == 0.0:
-        windows = f"{len(report.starts)} decisions"
-    lines = [f"judged    {seconds(trace.judged)} of {seconds(trace.duration)}, {windows}"]
+        windows = f", {len(report.starts)} decisions" if report.starts.size else ""
+    lines = [f"judged    {seconds(trace.judged)} of {seconds(trace.duration)}{windows}"]
     if report.coverage is not None:
         lines.append(f"coverage  {_covered(report.coverage)}")
     return "\n".join(lines)

@@ -47,10 +47,8 @@ def read_trace(
     readings = _readings(program, bare)
     start = min((int(reading.times[0]) for reading in readings), default=0)
     losses = _losses(bare, readings)
-    if strict and losses:
-        raise file_fault(
-            path, "V313", "the log is not whole, as --strict wants it", _damage(losses)
-        )
+    if strict:
+        refuse_losses(path, losses)
     return Trace(
         source=str(path),
         series=_all_series(readings, start),
@@ -59,6 +57,17 @@ def read_trace(
         losses=losses,
         notes=_notes(bare, readings),
     )
+
+
+def refuse_losses(path: Path, losses: Sequence[Loss]) -> None:
+    """Stops where something of a log was lost.
+
+    Raises:
+        SpecError: it was (V313).
+    """
+    if losses:
+        message = "the log is not whole, as --strict wants it"
+        raise file_fault(path, "V313", message, _damage(losses))
 
 
 @final

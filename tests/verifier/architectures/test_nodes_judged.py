@@ -9,14 +9,19 @@ import pytest
 
 from compiler.architecture.arbiters import compile_arbiter
 from runtime.arbiter import Arbiter
-from runtime.architecture import Architecture, Way
+from runtime.architecture import Architecture, Outside, Way
 from runtime.program import Program
 from runtime.scheduler.scheduler import Scheduler
 from specc.loading import load_program
-from specc.verifying_architecture import examine_nodes, nodes_text, verdict_of
+from specc.verifying_architecture import How, NodeVerdict, examine_nodes
 from tests.runtime.scheduler.plane import STEP, N, Plain, Plane, architecture, resolution, scenario
 from verifier.architectures.gathering import Gathered
-from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
+from verifier.architectures.nodes import (
+    NodeRecord,
+    examine_behavior,
+    examine_decisions,
+    held_back,
+)
 from verifier.architectures.way import has_its_way
 from verifier.report.arbitration import ThresholdStanding
 from verifier.report.report import Verdict
@@ -109,10 +114,10 @@ def test_behaviors_are_judged_only_where_they_have_their_way(recorded: Recorded)
     for record, program in zip((home, away), whole.programs, strict=True):
         assert 0.1 < record.free.mean() < 0.9
         made = examine_behavior(program, record, "run", only_verdict=True)
-        assert made.report.verdict is Verdict.PASS
-        everywhere = replace(record, free=np.ones(record.times.size, dtype=np.bool_))
+        assert made.examination.report.verdict is Verdict.PASS
+        everywhere = replace(record, held_back={})
         blamed = examine_behavior(program, everywhere, "run", only_verdict=True)
-        assert blamed.report.verdict is Verdict.FAIL
+        assert blamed.examination.report.verdict is Verdict.FAIL
 
 
 def test_a_drive_that_is_too_weak_fails_the_behaviors_that_use_it(tmp_path: Path) -> None:
@@ -120,7 +125,7 @@ def test_a_drive_that_is_too_weak_fails_the_behaviors_that_use_it(tmp_path: Path
 
     for record, program in zip((home, away), whole.programs, strict=True):
         made = examine_behavior(program, record, "run", only_verdict=True)
-        assert made.report.verdict is Verdict.FAIL
+        assert made.examination.report.verdict is Verdict.FAIL
 
 
 def test_an_arbiter_is_judged_by_what_it_sampled_and_chose(
@@ -157,18 +162,49 @@ def test_who_is_suppressed_or_blended_has_not_its_way(
     whole = replace(whole, channels=(channel, *whole.channels[1:]))
 
     both = np.array([[True, True, True], [False, True, True], [False, False, False]])
-    found = has_its_way(whole, both)
+    found = has_its_way(whole, both, both.astype(float))
 
     assert found[0].tolist() == expected
     assert found[1].tolist() == [False, True, True]
     assert not found[2].any()
 
 
-def test_all_nodes_are_told_in_one_table(recorded: Recorded) -> None:
+def test_in_a_blend_who_has_nearly_all_of_the_weight_has_its_way(tmp_path: Path) -> None:
+    whole = wired(tmp_path)
+    channel = replace(whole.channels[0], resolution=resolution(Way.BLEND, 0, 1, arbiter=2))
+    whole = replace(whole, channels=(channel, *whole.channels[1:]))
+
+    acts = np.ones((3, 3), dtype=np.bool_)
+    weights = np.array([[0.995, 0.005, 0.0], [0.9, 0.1, 0.0], [0.0, 1.0, 0.0]])
+    found = has_its_way(whole, acts, weights)
+
+    assert found[:, :2].tolist() == [[True, False], [False, False], [False, True]]
+
+
+def test_every_node_is_judged_by_its_own_spec(recorded: Recorded) -> None:
     whole, records = recorded
 
-    found = examine_nodes(whole, records, "run", only_verdict=True)
+    found = examine_nodes(whole, records, "run", How(only_verdict=True))
 
-    assert [each.name for each in found] == ["home", "away", "choose"]
-    assert verdict_of(found) is Verdict.PASS
-    assert "choose" in nodes_text(found)
+    assert [each.name for each in found if isinstance(each, NodeVerdict)] == [
+        "home",
+        "away",
+        "choose",
+    ]
+
+
+def test_readings_at_an_edge_that_they_may_be_beyond_are_not_judged(recorded: Recorded) -> None:
+    whole, _ = recorded
+    node = whole.nodes[0]
+    wide = tuple(replace(s, low=-9.0, high=9.0) for s in whole.board)
+    clipping = replace(node, inputs=tuple(replace(i, outside=Outside.CLIP) for i in node.inputs))
+    wired = replace(whole, board=wide, nodes=(clipping, *whole.nodes[1:]))
+    columns = {"x": np.array([4.9, 5.0, -5.0, 0.0])}
+    acts = np.ones(4, dtype=np.bool_)
+
+    back = held_back(wired, 0, columns, acts, acts)
+
+    assert back["x beyond its domain (clipped)"].tolist() == [False, True, True, False]
+    narrow = tuple(replace(s, low=-5.0, high=5.0) for s in whole.board)
+    unclipped = held_back(replace(wired, board=narrow), 0, columns, acts, acts)
+    assert not unclipped["x beyond its domain (clipped)"].any()

@@ -57,10 +57,18 @@ def attached_programs(path: Path) -> list[tuple[str, bytes]]:
 
     Reads no message. Raises SpecError V301.
     """
+    return attachments(path, ".specc")
+
+
+def attachments(path: Path, suffix: str) -> list[tuple[str, bytes]]:
+    """Names and bytes of what an MCAP file carries under names that end in `suffix`.
+
+    Reads no message. Raises SpecError V301.
+    """
     try:
         if path.is_dir() or not is_mcap(_head(path)):
             return []
-        return find_attachments(path, ".specc")
+        return find_attachments(path, suffix)
     except OSError as error:
         raise _unreadable(path, error) from error
 

@@ -1,0 +1,210 @@
+"""By what the recording of a scenario is judged: what it carries, or a spec that is named."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final, final
+
+from runtime import architecture_artifact
+from runtime.arbiter import Arbiter
+from runtime.architecture import Architecture
+from runtime.container import ArtifactError
+from runtime.program import Program
+from runtime.requirement import Requirement
+from runtime.scenario import Robot, Start
+from runtime.world.model import Body
+from spec_schema.diagnostics import SpecError
+from spec_schema.suggest import did_you_mean
+from specc.faults import fault
+from specc.loading import compile_scenario_spec, kind_of, load_architecture
+from verifier.architectures.document import ScenarioDocument, attached_scenario
+from verifier.report.report import SpecIdentity
+from verifier.traces.files.open_log import attached_programs
+
+DAMAGED: Final = "V332"
+OTHER: Final = "V392"
+"""The code of a spec that is about nothing in the recording."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Carried:
+    """What a recording carries: its robots, and the document of its scenario, if it has one."""
+
+    robots: tuple[Robot, ...]
+    document: ScenarioDocument | None
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Standard:
+    """What the nodes of each robot, and the whole run, are held against.
+
+    only: names of the nodes that are judged, `robot.node`; None for all. spec: of the scenario
+    that requires something. how: where all that comes from, as a phrase.
+    """
+
+    robots: tuple[Robot, ...]
+    requirements: tuple[Requirement, ...]
+    only: frozenset[str] | None
+    spec: SpecIdentity
+    how: str
+
+
+def carries_architectures(trace: Path) -> bool:
+    """Whether this is the recording of a scenario."""
+    if trace.suffix.lower() != ".mcap" or not trace.is_file():
+        return False
+    return any(_is_architecture(data) for _, data in attached_programs(trace))
+
+
+def _is_architecture(data: bytes) -> bool:
+    try:
+        return architecture_artifact.is_architecture(data)
+    except ArtifactError:
+        return False
+
+
+def is_of_runs(spec: Path) -> bool:
+    """Whether a spec is about whole runs: a scenario, or an architecture.
+
+    Raises:
+        SpecError: it can't be read.
+    """
+    return _kind(spec) in {"scenario", "architecture"}
+
+
+def carried_by(trace: Path) -> Carried | None:
+    """What the recording of a scenario carries; None where it is of something else.
+
+    Raises:
+        SpecError: something of it is damaged (V332), or it can't be read (V301).
+    """
+    if trace.suffix.lower() != ".mcap" or not trace.is_file():
+        return None
+    robots = []
+    for name, data in attached_programs(trace):
+        try:
+            if architecture_artifact.is_architecture(data):
+                architecture, body = architecture_artifact.from_bytes(data)
+                robots.append(_robot(name.removesuffix(".specc"), architecture, body))
+        except ArtifactError as error:
+            message = f"the attached {name} can't be used: {error}"
+            raise fault(DAMAGED, trace, message, "record it again") from error
+    if not robots:
+        return None
+    try:
+        return Carried(tuple(robots), attached_scenario(trace))
+    except ArtifactError as error:
+        message = f"the attached scenario can't be used: {error}"
+        raise fault(DAMAGED, trace, message, "record it again") from error
+
+
+def standard_of(
+    trace: Path,
+    carried: Carried,
+    spec: Path | Program | None,
+    program_of: Callable[[Path], Program | Arbiter],
+) -> Standard:
+    """What the recording is held against; `program_of` makes a behavior or arbiter of a path.
+
+    Raises:
+        SpecError: the spec is wrong, or about nothing that was recorded (V392).
+    """
+    document = carried.document
+    name = trace.stem if document is None else document.name
+    own = SpecIdentity(name, f"{name}.scenario.json, attached to the trace", "")
+    if spec is None:
+        requirements = () if document is None else document.requirements
+        return Standard(carried.robots, requirements, None, own, "attached to the trace")
+    if isinstance(spec, Program):
+        return _by_node(trace, carried, spec, f"{spec.name}, as given", own)
+    how = f"{spec}, as named by --spec"
+    match _kind(spec):
+        case "scenario":
+            return _by_scenario(trace, carried, spec, how)
+        case "architecture":
+            return _by_architecture(trace, carried, spec, how, own)
+        case _:
+            return _by_node(trace, carried, program_of(spec), how, own)
+
+
+def _kind(spec: Path) -> str:
+    if spec.suffix != ".specc":
+        return kind_of(spec)
+    data = spec.read_bytes() if spec.is_file() else b""
+    return "architecture" if _is_architecture(data) else "behavior"
+
+
+def _by_scenario(trace: Path, carried: Carried, spec: Path, how: str) -> Standard:
+    scenario = compile_scenario_spec(spec).scenario
+    recorded = {robot.name for robot in carried.robots}
+    missing = [robot.name for robot in scenario.robots if robot.name not in recorded]
+    if missing:
+        raise _about_others(trace, f"{spec} is about robot '{missing[0]}'", "robots", recorded)
+    source = scenario.source
+    identity = SpecIdentity(scenario.name, source.file, source.sha256)
+    return Standard(scenario.robots, scenario.requirements, None, identity, how)
+
+
+def _by_architecture(
+    trace: Path, carried: Carried, spec: Path, how: str, own: SpecIdentity
+) -> Standard:
+    """Every robot of an architecture of that name; where there is one robot, that one."""
+    architecture, body = load_architecture(spec)
+    meant = [robot for robot in carried.robots if robot.architecture.name == architecture.name]
+    if not meant and len(carried.robots) == 1:
+        meant = list(carried.robots)
+    if not meant:
+        names = {robot.architecture.name for robot in carried.robots}
+        message = f"{spec} is architecture '{architecture.name}'"
+        raise _about_others(trace, message, "architectures", names)
+    robots = tuple(_robot(robot.name, architecture, body) for robot in meant)
+    return Standard(robots, (), None, own, how)
+
+
+def _by_node(
+    trace: Path, carried: Carried, spec: Program | Arbiter, how: str, own: SpecIdentity
+) -> Standard:
+    """The nodes of a behavior or arbiter of that name, and no others."""
+    found = [(robot, _with(robot.architecture, spec)) for robot in carried.robots]
+    only = frozenset(
+        f"{robot.name}.{node.name}"
+        for robot, _ in found
+        for node in robot.architecture.nodes
+        if _name_of(robot.architecture, node.behavior, node.arbiter) == (type(spec), spec.name)
+    )
+    if not only:
+        wired = [robot.architecture for robot in carried.robots]
+        names = {each.name for one in wired for each in one.programs}
+        names |= {each.name for one in wired for each in one.arbiters}
+        kind = "arbiter" if isinstance(spec, Arbiter) else "behavior"
+        raise _about_others(trace, f"the spec is {kind} '{spec.name}'", "specs", names)
+    robots = tuple(replace(robot, architecture=changed) for robot, changed in found)
+    return Standard(robots, (), only, own, how)
+
+
+def _with(architecture: Architecture, spec: Program | Arbiter) -> Architecture:
+    """The architecture with the spec in the place of that of the same name."""
+    if isinstance(spec, Arbiter):
+        arbiters = tuple(spec if a.name == spec.name else a for a in architecture.arbiters)
+        return replace(architecture, arbiters=arbiters)
+    programs = tuple(spec if p.name == spec.name else p for p in architecture.programs)
+    return replace(architecture, programs=programs)
+
+
+def _name_of(architecture: Architecture, behavior: int, arbiter: int) -> tuple[type, str]:
+    if behavior >= 0:
+        return Program, architecture.programs[behavior].name
+    return (Arbiter, architecture.arbiters[arbiter].name) if arbiter >= 0 else (object, "")
+
+
+def _robot(name: str, architecture: Architecture, body: Body) -> Robot:
+    return Robot(name, body, architecture, Start(None), "")
+
+
+def _about_others(trace: Path, what: str, kind: str, names: set[str]) -> SpecError:
+    there = f"{kind} in it: {', '.join(sorted(names))}"
+    word = what.rpartition("'")[0].rpartition("'")[2]
+    remedy = "\n".join(part for part in (did_you_mean(word, names), there) if part)
+    return fault(OTHER, trace, f"{what}, which is not in this recording", remedy)
