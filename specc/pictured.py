@@ -177,8 +177,8 @@ def _at(times: Array, poses: Array, time: float) -> tuple[float, float]:
 
 
 def _margin(one: RequirementResult) -> str:
-    """By how much it holds, and where that was decided."""
-    if not np.isfinite(one.robustness):
+    """By how much it holds or does not, where that means anything, and when it was decided."""
+    if not np.isfinite(one.robustness) or one.outcome is Judged.OPEN:
         return ""
-    margin = f"robustness {quantity(one.robustness, one.unit)}"
+    margin = quantity(abs(one.robustness), one.unit)
     return f"{margin} at {seconds(one.witness.time)}" if one.witness else margin

@@ -1,4 +1,7 @@
-"""Trails of robots on a floor: coloured by what had its way, with marks of time and of trouble."""
+"""Trails of robots on a floor, with marks of time and of trouble.
+
+They are coloured by what had its way; where only one ever acts, by time.
+"""
 
 import math
 from collections.abc import Iterator
@@ -8,6 +11,7 @@ from typing import Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Colormap, LinearSegmentedColormap
 
 from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry, Look, line_entry
@@ -25,8 +29,12 @@ DASHES: Final = (
 STEPS: Final = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
 """Seconds between two marks of time."""
 MOST_MARKS: Final = 8
-MARGIN: Final = 0.004
-"""Metres by which a straight piece may miss what was there: finer is only bytes."""
+MARGIN: Final = 2.5e-4
+"""Share of the floor's longer side by which a straight piece may miss what was there."""
+PIECES: Final = 400
+"""Of a way that is coloured by time, at least."""
+SHORT: Final = 0.01
+"""Metres of a way that are too short to be seen."""
 
 
 def names_of(trails: Trails) -> tuple[str, ...]:
@@ -45,7 +53,7 @@ def pieces(acting: Integers) -> Iterator[tuple[int, int, int]]:
             yield int(acting[first]), first, last
 
 
-def thinned(points: Array, margin: float = MARGIN) -> Booleans:
+def thinned(points: Array, margin: float) -> Booleans:
     """Which of (n, 2) points on a way are enough, so that none is missed by more than `margin`.
 
     Douglas and Peucker's (1973) method.
@@ -74,10 +82,14 @@ def thinned(points: Array, margin: float = MARGIN) -> Booleans:
 def draw_trails(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[Entry]:
     """The ways of all robots; gives the legend's entries."""
     names = names_of(trails)
+    margin = MARGIN * float(np.ptp(scene.arena, axis=0).max())
     seen: set[int] = set()
     told = [tuple(place[:2]) for place in trails.robots[-1].tolist()]
     for robot in range(len(scene.robots)):
-        seen |= _trail(axes, trails, robot, names, palette)
+        if is_by_time(trails):
+            _timed(axes, trails, robot, margin, palette)
+        else:
+            seen |= _trail(axes, trails, robot, names, margin, palette)
         _times(axes, trails, robot, palette, told)
     entries = [
         line_entry(f"{name} acts", linewidth=2.4, **look_of(place, palette))
@@ -89,6 +101,20 @@ def draw_trails(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> l
     return [*entries, *_troubles(axes, trails, palette)]
 
 
+def is_by_time(trails: Trails) -> bool:
+    """Whether ways are coloured by time: who acts tells nothing where it is always the same."""
+    return len(names_of(trails)) <= 1
+
+
+def time_colors(palette: Palette) -> Colormap:
+    """From the beginning of a run to its end: from faint to strong."""
+    if palette.hatches:
+        return LinearSegmentedColormap.from_list("time", ["#b4b4b4", "#000000"])
+    if palette.paper == "#ffffff":
+        return LinearSegmentedColormap.from_list("time", ["#f2b04a", "#c8407f", "#35115f"])
+    return LinearSegmentedColormap.from_list("time", ["#35608f", "#c65f9c", "#ffe9a8"])
+
+
 def look_of(place: int, palette: Palette) -> Look:
     """The colour and dashes of what acts; NOBODY is thin and grey."""
     if place == NOBODY:
@@ -98,19 +124,21 @@ def look_of(place: int, palette: Palette) -> Look:
 
 
 def _trail(
-    axes: Axes, trails: Trails, robot: int, names: tuple[str, ...], palette: Palette
+    axes: Axes,
+    trails: Trails,
+    robot: int,
+    names: tuple[str, ...],
+    margin: float,
+    palette: Palette,
 ) -> set[int]:
-    """One robot's way, a piece for each stretch in which one acts; gives who acted."""
+    """One robot's way, a piece for each stretch in which one acts; gives who is seen to act."""
     points = trails.robots[:, robot, :2]
     ways: dict[int, list[Array]] = {}
     for doer, first, last in pieces(trails.acting[:, robot]):
         place = NOBODY if doer == NOBODY else names.index(trails.doers[robot][doer])
         stretch = points[first : last + 1]
-        ways.setdefault(place, []).append(stretch[thinned(stretch)])
-    every = [way for stretches in ways.values() for way in stretches]
-    axes.add_collection(
-        LineCollection(every, colors=palette.paper, linewidths=4.0, alpha=0.85, zorder=5.0)
-    )
+        ways.setdefault(place, []).append(stretch[thinned(stretch, margin)])
+    _ground(axes, [way for stretches in ways.values() for way in stretches], palette)
     for place, stretches in ways.items():
         width = 1.2 if place == NOBODY else 2.2
         axes.add_collection(
@@ -118,7 +146,34 @@ def _trail(
                 stretches, linewidths=width, zorder=5.1, **_many(look_of(place, palette))
             )
         )
-    return set(ways)
+    return {place for place, stretches in ways.items() if any(map(_is_long, stretches))}
+
+
+def _timed(axes: Axes, trails: Trails, robot: int, margin: float, palette: Palette) -> None:
+    """One robot's way, coloured by time."""
+    points, times = trails.robots[:, robot, :2], trails.times
+    kept = thinned(points, margin)
+    kept[:: max(len(points) // PIECES, 1)] = True
+    rows = np.flatnonzero(kept)
+    pieces_of = np.stack([points[rows[:-1]], points[rows[1:]]], axis=1)
+    _ground(axes, [points[rows]], palette)
+    middle = 0.5 * (times[rows[:-1]] + times[rows[1:]])
+    span = max(float(times[-1] - times[0]), 1e-9)
+    colors = time_colors(palette)((middle - times[0]) / span)
+    axes.add_collection(
+        LineCollection(list(pieces_of), colors=colors, linewidths=1.8, capstyle="round", zorder=5.1)
+    )
+
+
+def _ground(axes: Axes, ways: list[Array], palette: Palette) -> None:
+    """A rim around ways, that parts them where they cross."""
+    axes.add_collection(
+        LineCollection(ways, colors=palette.paper, linewidths=3.4, alpha=0.85, zorder=5.0)
+    )
+
+
+def _is_long(way: Array) -> bool:
+    return float(np.hypot(*np.diff(way, axis=0).T).sum()) > SHORT
 
 
 def _many(one: Look) -> Look:
@@ -171,7 +226,7 @@ def _troubles(axes: Axes, trails: Trails, palette: Palette) -> list[Entry]:
         "mfc": "none", "zorder": 7,
     }  # fmt: skip
     for marks, drawn, name in (
-        (trails.contacts, touch, "contact"),
+        (trails.contacts, touch, "touched something"),
         (trails.jams, stuck, "stuck"),
     ):
         if marks:
@@ -179,11 +234,19 @@ def _troubles(axes: Axes, trails: Trails, palette: Palette) -> list[Entry]:
             axes.plot([m.x for m in kept], [m.y for m in kept], **drawn)
             entries.append(line_entry(f"{name} ({len(marks)})", **drawn))
     for jam in trails.jams:
-        axes.annotate(
-            f"stuck for {seconds(jam.end - jam.time)}", (jam.x, jam.y), (7, -9),
-            textcoords="offset points", fontsize=7, color=palette.alarm, zorder=9,
-        )  # fmt: skip
+        _tell_jam(axes, jam, palette)
     return entries
+
+
+def _tell_jam(axes: Axes, jam: Mark, palette: Palette) -> None:
+    """How long a robot was stuck, on the side on which there is more room."""
+    is_left = jam.x < float(np.mean(axes.get_xlim()))
+    axes.annotate(
+        f"stuck for {seconds(jam.end - jam.time)}", (jam.x, jam.y), (14 if is_left else -14, -9),
+        textcoords="offset points", fontsize=7, color=palette.alarm, zorder=9, va="top",
+        ha="left" if is_left else "right",
+        bbox={"facecolor": palette.paper, "alpha": 0.7, "pad": 0.6, "edgecolor": "none"},
+    )  # fmt: skip
 
 
 def _apart(marks: tuple[Mark, ...]) -> list[Mark]:

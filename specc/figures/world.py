@@ -6,9 +6,10 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PatchCollection
 from matplotlib.colorbar import Colorbar
-from matplotlib.colors import Colormap, LinearSegmentedColormap, PowerNorm
+from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize, PowerNorm
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Patch, PathPatch
@@ -20,10 +21,10 @@ from specc.figures.legend import Entry, Look, draw_legend, line_entry
 from specc.figures.palettes import PALETTES, Palette
 from specc.figures.paper import axes_at, heading, new_figure, write_heading
 from specc.figures.quantities import seconds
-from specc.figures.scene import Glow, Scene, Trails
+from specc.figures.scene import NOBODY, Glow, Scene, Trails
 from specc.figures.style import look
 from specc.figures.style_names import Style
-from specc.figures.trails import draw_trails, names_of, thinned
+from specc.figures.trails import MARGIN, draw_trails, is_by_time, names_of, thinned, time_colors
 
 LONG: Final = 6.6
 """Inches of the longer side of the floor."""
@@ -35,6 +36,10 @@ CORNERS: Final = 40
 MOVED: Final = 5e-3
 """Metres, or a share of a radian: what is less is no move."""
 LAMP: Final = "#f0e442"
+SHARE: Final = 0.005
+"""Of the time; who acts less is not told of."""
+MINUTES: Final = 180.0
+"""Seconds from which on a run is told in minutes."""
 DIM: Final = 0.5
 """The power by which lux become shades: light falls off so fast that a bulb would be a dot."""
 
@@ -48,7 +53,9 @@ def draw_world(scene: Scene, trails: Trails, style: Style = Style.SCREEN) -> Fig
         size = (scale * (right - left), scale * (high - low))
         width = LEFT + size[0] + RIGHT
         above = [scene.about] if scene.about else []
-        text = heading(scene.title, [*above, _lasted(trails)], _required(trails), width - 0.4)
+        text = heading(
+            scene.title, [*above, _lasted(scene, trails)], _required(trails), width - 0.4
+        )
         foot = BELOW + 0.1 + 0.165 * len(text.below)
         figure = new_figure(width, foot + size[1] + text.height + 0.15, palette)
         axes = axes_at(figure, (LEFT, foot), size)
@@ -61,6 +68,9 @@ def draw_world(scene: Scene, trails: Trails, style: Style = Style.SCREEN) -> Fig
         corner = ((LEFT + size[0] + 0.2) / width, (foot + size[1]) / figure.get_size_inches()[1])
         draw_legend(figure, entries, corner)
         _light(figure, axes, scene, (LEFT + size[0] + 0.2, foot), palette)
+        if is_by_time(trails):
+            beside = 1.0 if scene.glow is not None else 0.0
+            _clock(figure, trails, (LEFT + size[0] + 0.2 + beside, foot), palette)
         top = figure.get_size_inches()[1] - 0.08
         write_heading(figure, text, palette, 0.12, top, foot - BELOW)
     return figure
@@ -174,7 +184,7 @@ def _things(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
 
 def _pushed(axes: Axes, way: Array, palette: Palette) -> None:
     """The way of what was pushed, with an arrow where it ends."""
-    kept = way[thinned(way)]
+    kept = way[thinned(way, MARGIN * float(np.abs(np.diff(axes.get_xlim())[0])))]
     axes.plot(kept[:, 0], kept[:, 1], color=palette.ink, lw=0.9, ls=(0, (1, 1.5)), zorder=3.2)
     far = np.flatnonzero(np.hypot(*(kept - kept[-1]).T) > 0.02)
     if len(far):
@@ -261,22 +271,35 @@ def light_image(axes: Axes, glow: Glow, palette: Palette) -> AxesImage:
     )
 
 
-def _lasted(trails: Trails) -> str:
-    """How long it was, and what share of the time each behavior had its way."""
+def _clock(figure: Figure, trails: Trails, corner: tuple[float, float], palette: Palette) -> None:
+    """A bar of the colours of time."""
+    ended = float(trails.times[-1])
+    unit, name = (60.0, "min") if ended >= MINUTES else (1.0, "s")
+    norm = Normalize(float(trails.times[0]) / unit, ended / unit)
+    shown = ScalarMappable(norm, time_colors(palette))
+    bar: Colorbar = figure.colorbar(shown, cax=axes_at(figure, corner, (0.13, 1.25)))
+    bar.set_label(f"time [{name}]", fontsize=8.5)
+    bar.ax.tick_params(labelsize=8)
+
+
+def _lasted(scene: Scene, trails: Trails) -> str:
+    """How long it was, from which seed, and what share of the time each behavior had its way."""
     begun, ended = float(trails.times[0]), float(trails.times[-1])
-    parts = [f"{seconds(ended - begun)} of simulated time"]
+    seed = "" if scene.seed is None else f", seed {scene.seed}"
+    lasted = f"{seconds(ended - begun)} of simulated time{seed}"
     shares = dict.fromkeys(names_of(trails), 0.0)
     for robot, doers in enumerate(trails.doers):
         for place, name in enumerate(doers):
             shares[name] += float(np.mean(trails.acting[:, robot] == place)) / len(trails.doers)
-    told = [f"{name} {100 * share:.0f} %" for name, share in shares.items() if share > 0.0]
-    return ": ".join([*parts, ", ".join(told)]) if told else parts[0]
+    shares["nobody"] = float(np.mean(trails.acting == NOBODY))
+    told = [f"{name} {100 * share:.0f} %" for name, share in shares.items() if share >= SHARE]
+    return f"{lasted}. Acting: {', '.join(told)}" if told else lasted
 
 
 def _required(trails: Trails) -> list[str]:
     """One line for each requirement."""
-    marks = {True: "✓ held", False: "✗ failed", None: "? undecided"}
+    marks = {True: "✓ satisfied", False: "✗ violated", None: "? open"}
     return [
-        f"{marks[one.holds]}: {one.text}" + (f" ({one.margin})" if one.margin else "")
+        f"{marks[one.holds]}{f' by {one.margin}' if one.margin else ''}: {one.text}"
         for one in trails.outcomes
     ]

@@ -72,11 +72,11 @@ def test_a_poster_tells_who_acted_what_happened_and_what_was_required(
     figure = draw_world(scene(lit=lit), trails(), style)
 
     told = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert {"seek acts", "avoid acts", "nobody acts", "contact (2)", "stuck (1)"} <= set(told)
+    assert {"seek acts", "avoid acts", "nobody acts", "touched something (2)", "stuck (1)"} <= set(told)
     words = "\n".join(text.get_text() for text in figure.texts)
-    assert "✗ failed: always r.clearance > 1 cm (robustness −1 cm)" in words
-    assert "✓ held: eventually r.x > 2 m" in words
-    assert "12 s of simulated time: seek 25 %, avoid 50 %" in words
+    assert "✗ violated by 1 cm: always r.clearance > 1 cm" in words
+    assert "✓ satisfied: eventually r.x > 2 m" in words
+    assert "12 s of simulated time, seed 3. Acting: seek 25 %, avoid 50 %, nobody 25 %" in words
 
 
 def test_equal_runs_give_equal_bytes() -> None:
