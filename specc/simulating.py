@@ -6,10 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias, final
 
-import numpy as np
-
-from runtime.program import Kind
-from runtime.recording.tracks import Quantity
 from runtime.run import Run, Seen, run
 from runtime.scenario import Scenario
 from runtime.scheduler.observer import Observer
@@ -19,9 +15,8 @@ from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.given import Value, seconds
 from specc.loading import compile_scenario_spec
+from verifier.architectures.required import results_on
 from verifier.report.requirement_results import Outcome, RequirementResult
-from verifier.requirements.judge import judge_requirements
-from verifier.requirements.signals import Signal
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 
@@ -93,23 +88,7 @@ def simulate_scenario(
 
 def required_of(made: Run) -> tuple[RequirementResult, ...]:
     """What the run says of each requirement of its scenario."""
-    units = {name: quantity.unit for name, quantity in made.signals.items()}
-    signals = {name: signal_of(quantity) for name, quantity in made.signals.items()}
-    return judge_requirements(made.scenario.requirements, signals, made.duration, units)
-
-
-def signal_of(quantity: Quantity) -> Signal:
-    """A quantity as requirements read it; one without a sample was never known."""
-    turns = quantity.kind is Kind.PERIODIC
-    times, values = quantity.times, quantity.values
-    return Signal(
-        name=quantity.name,
-        times=times if times.size else np.zeros(1),
-        values=values if values.size else np.full(1, np.nan),
-        is_held=quantity.is_held,
-        period=quantity.high - quantity.low if turns else 0.0,
-        low=quantity.low if turns else 0.0,
-    )
+    return results_on(made.scenario.requirements, made.signals, made.duration)
 
 
 def whole(duration: float, step: float) -> float:

@@ -156,7 +156,8 @@ def _within_modes(program: Program, record: NodeRecord) -> Booleans:
     if modes is None or not free.size:
         return free
     changes = np.append(np.diff(modes) != 0.0, False)
-    return free & ~(changes & np.append(~free[1:], False))
+    judged: Booleans = free & ~(changes & np.append(~free[1:], False))
+    return judged
 
 
 def examine_decisions(

@@ -11,7 +11,6 @@ from verifier.flags import runs_of
 from verifier.report.report import (
     CellAxis,
     Coverage,
-    HorizonFigure,
     Interval,
     Standing,
     VariableResult,
@@ -161,7 +160,7 @@ def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
     if not all(np.isfinite(result.declared.interval.high) for result in results):
         horizon = results[0].declared.horizon
         return [too_few(horizon)]
-    factors = {result.name: _more(result.declared) for result in results}
+    factors = {result.name: _more(result) for result in results}
     hopeless = [name for name, factor in factors.items() if factor > HOPELESS]
     told = []
     if hopeless:
@@ -188,11 +187,21 @@ def too_few(horizon: float) -> str:
     )
 
 
-def _more(figure: HorizonFigure) -> float:
-    """By how much data has to be multiplied until the interval no longer holds the tolerance."""
-    is_above = figure.departure > figure.tolerance
-    edge = figure.interval.low if is_above else figure.interval.high
-    return float(((edge - figure.departure) / (figure.tolerance - figure.departure or 1e-300)) ** 2)
+def _more(result: VariableResult) -> float:
+    """By how much data has to be multiplied until an interval no longer holds the tolerance.
+
+    Of the departure; where that is decided, of the mean in the part that departs most surely.
+    """
+    at = result.declared
+    if at.interval.low <= at.tolerance <= at.interval.high:
+        edge = at.interval.low if at.departure > at.tolerance else at.interval.high
+        far, gap = edge - at.departure, at.tolerance - at.departure
+    else:
+        mean, interval = result.mean, result.mean_interval
+        if result.worst is not None:
+            mean, interval = result.worst.mean, result.worst.interval
+        far, gap = 0.5 * (interval.high - interval.low), at.tolerance - abs(mean)
+    return max(1.0, float((far / (gap or 1e-300)) ** 2))
 
 
 def scope(coverage: Coverage) -> str:
