@@ -26,6 +26,7 @@ from runtime.table_bounds import column_jets, columns_of
 from runtime.world.geometry import Plan
 from runtime.world.kernels import nearness
 from runtime.world.kernels.cache import SOURCES as SENSES
+from runtime.world.kernels.speeds import largest
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Light, Pose
 from runtime.world.rays import NOBODY, View, first_hits, least_range, nearest_visible, parts_of
@@ -91,13 +92,14 @@ def _senses() -> object:
 
 def _gap() -> object:
     edges, circles = np.zeros((1, 4)), np.zeros((0, 3))
-    return nearness.gap(edges, circles, edges, circles, np.ones(1, dtype=np.bool_), np.inf)
+    far = nearness.gap(edges, circles, edges, circles, np.ones(1, dtype=np.bool_), np.inf)
+    return far, largest(np.zeros((1, 6)))
 
 
 def _tick() -> object:
     inputs = Inputs((), {})
     ticker = Ticker(NO_MOTION, inputs, (), None, 1.0, np.random.default_rng(0))
-    return ticker.tick(np.zeros(1), allowed=True)
+    return ticker.tick(np.zeros(1), allowed=True), inputs.read(np.zeros(1))
 
 
 def _competition() -> object:

@@ -8,6 +8,7 @@ import numpy as np
 from runtime.arbiter import Arbiter
 from runtime.arrays import Array
 from runtime.code import Code
+from runtime.direct_calls import machine_code
 from runtime.kernels.machine import evaluate_points
 from runtime.tape import pack
 
@@ -25,12 +26,15 @@ class Conditions:
         self._read_only = self._register.view()
         self._read_only.setflags(write=False)
         self._out: Array = np.zeros((1, len(codes)))
+        given = (self._tape, self._read_only, self._out)
+        self._evaluate = machine_code(evaluate_points, given)
 
     def at(self, reads: Array) -> Array:
         """The values (q,) where it reads `reads` (m,); overwritten by the next call."""
-        self._register[0, : reads.size] = reads
-        evaluate_points(self._tape, self._read_only, self._out)
         values: Array = self._out[0]
+        if values.size:
+            self._register[0, : reads.size] = reads
+            self._evaluate(self._tape, self._read_only, self._out)
         return values
 
 

@@ -26,7 +26,7 @@ class Acting:
     is_ready: (nodes,) of what each node said last that is in effect: whether it is to act, as far
     as it is its own to say. allowed: whether nothing outside a node keeps it from acting.
     acts: both. by: for each arbiter how strongly its choices in effect name each node (nodes,);
-    weights: their sum.
+    weights: their sum. does: acts as a list, which is read quicker.
     """
 
     def __init__(self, architecture: Architecture, inputs: Sequence[Inputs]) -> None:
@@ -44,7 +44,9 @@ class Acting:
         self._set: dict[tuple[int, str], float] = {}
         self.is_ready = [False for _ in nodes]
         self.allowed = [False for _ in nodes]
+        self.does = [False for _ in nodes]
         self.acts: Booleans = np.zeros(len(nodes), dtype=np.bool_)
+        self._weights = [0.0 for _ in nodes]
         self.by: dict[int, list[float]] = {i: [0.0 for _ in nodes] for i in arbiters}
         self.weights: Array = np.zeros(len(nodes))
 
@@ -56,10 +58,11 @@ class Acting:
         self._replace(would)
         if wanted != self._set:
             self._apply(wanted)
-        before, before_weights = self.acts, self.weights
+        if would == self.does and weights == self._weights:
+            return False
+        self.does, self._weights = would, weights
         self.acts, self.weights = np.array(would, dtype=np.bool_), np.array(weights)
-        same = np.array_equal(before, self.acts) and np.array_equal(before_weights, self.weights)
-        return not same
+        return True
 
     def _weighed(self, board: Array) -> tuple[list[float], dict[tuple[int, str], float]]:
         """How strongly choices in effect name each node, and what they set: the first has it."""

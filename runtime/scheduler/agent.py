@@ -86,7 +86,7 @@ class Agent:
             self._acting_may_differ = True
         if said.commands.size:
             self._commands[node] = said.commands
-            self._channels_may_differ |= bool(self.acting.acts[node])
+            self._channels_may_differ |= self.acting.does[node]
 
     def settle(self, instant: int) -> None:
         """Work out who acts, if that may differ from before."""

@@ -57,8 +57,8 @@ class Resolver:
         Raises:
             UserCodeError: the user's function did not give a number.
         """
-        acts = acting.acts
-        mine = [member for member in self._members if acts[member.node]]
+        does = acting.does
+        mine = [member for member in self._members if does[member.node]]
         self.rate = 0.0
         self.in_conflict = self._way in {Way.EXCLUSIVE, Way.SINGLE} and len(mine) > 1
         self.is_limited = False

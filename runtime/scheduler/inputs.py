@@ -1,13 +1,15 @@
 """Wires into a node: where each entry of its register comes from at its ticks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import final
 
 import numpy as np
 
 from runtime.architecture import Input, Outside
 from runtime.arrays import Array, Booleans, Integers
+from runtime.direct_calls import machine_code
 from runtime.kernels.blocks import LARGEST
+from runtime.scheduler.kernels.wires import read
 
 ANY = (-LARGEST, LARGEST)
 """The domain of what may be any finite number."""
@@ -32,6 +34,7 @@ class Inputs:
         self.inhibits: Booleans = np.array(
             [wire.outside is Outside.INHIBIT for wire in wires], dtype=np.bool_
         )
+        self._read: Callable[..., bool] | None = None
         self._wired = (self.signals.copy(), self.values.copy())
 
     def set(self, entry: str, value: float | None) -> None:
@@ -44,10 +47,17 @@ class Inputs:
 
     def read(self, board: Array) -> tuple[Array, bool]:
         """The values (m,) of the entries now, and whether none of them keeps it from acting."""
-        raw = np.where(self.signals >= 0, board[self.signals] * self.scales, self.values)
-        inside = (raw >= self.low) & (raw <= self.high)
-        if inside.all():
-            return raw, True
-        lost = np.isnan(raw)
-        clipped = np.clip(np.where(lost, self.low, raw), self.low, self.high)
-        return clipped, not bool((~inside & self.inhibits | lost).any())
+        found = np.empty(len(self.entries))
+        given = (
+            board,
+            self.signals,
+            self.scales,
+            self.values,
+            self.low,
+            self.high,
+            self.inhibits,
+            found,
+        )
+        if self._read is None:
+            self._read = machine_code(read, given)
+        return found, self._read(*given)

@@ -1,6 +1,6 @@
 """Ticks of a behavior: its program, packed for one compiled call a tick."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, final
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from runtime.architecture import Command
 from runtime.arrays import Array, Integers, frozen
 from runtime.code import ONE, Code
+from runtime.direct_calls import machine_code
 from runtime.flow import Source, rate_of
 from runtime.kernels.tape import LANES, Tape
 from runtime.program import Kind, Program, Role, State
@@ -19,7 +20,10 @@ from runtime.scheduler.kernels.tick import (
     AS_RATE,
     BARRED,
     BROKEN,
+    COMMANDS,
+    NOTHING,
     OUTSIDE,
+    OWN,
     Frame,
     tick,
 )
@@ -63,6 +67,7 @@ class Ticker:
         self.told: Array = np.zeros(len(program.outputs) + len(commands))
         self._generator = generator
         self._kicks: Array = np.zeros(len(program.noise))
+        self._tick: Callable[..., int] | None = None
 
     @property
     def own(self) -> Array:
@@ -90,7 +95,7 @@ class Ticker:
         if self._kicks.size:
             # Drawn whether or not it acts, so that its numbers do not depend on who inhibits it.
             self._kicks = self._generator.standard_normal(self._kicks.size)
-        flags: int = tick(
+        given = (
             self._frame,
             board,
             self.inputs.signals,
@@ -100,7 +105,9 @@ class Ticker:
             self.told,
             int(allowed),
         )
-        return flags
+        if self._tick is None:
+            self._tick = machine_code(tick, given)
+        return self._tick(*given)
 
 
 def domains_of(program: Program) -> dict[str, tuple[float, float]]:
@@ -136,6 +143,7 @@ def _frame(
         mode=names.index(program.field.mode) if program.field.mode else -1,
         outputs=len(program.outputs),
         is_map=int(program.field.is_map),
+        looks_ahead=_looks_ahead(packed, own),
         work=_work(tape),
         rest_work=_work(rest),
         room=np.zeros((ROOM, len(names))),
@@ -196,6 +204,12 @@ def _packed(command: Command, program: Program) -> tuple[int, int]:
     if command.entry not in program.field.driven:
         return AS_ENTRY, program.register.index(command.entry)
     return AS_NEXT if command.mode == "set-point" else AS_RATE, names.index(command.entry)
+
+
+def _looks_ahead(commands: Sequence[tuple[int, int]], own: Sequence[int]) -> int:
+    if any(what == AS_NEXT for what, _ in commands):
+        return COMMANDS
+    return OWN if own else NOTHING
 
 
 def _whole(rows: Sequence[Sequence[int]], columns: int) -> Integers:

@@ -12,7 +12,7 @@ from enum import StrEnum
 from typing import Final, NamedTuple, final
 
 from runtime.world.drive import Motor
-from runtime.world.space import SLOP, Space, Touches
+from runtime.world.space import SLOP, Space, Touch
 
 LOOK: Final = 0.1
 """Seconds between two looks at the robots."""
@@ -105,12 +105,8 @@ class Auditor:
             return
         self._depth, self._time = depth, time
         if depth > SLOP:  # who it is between matters only above what is usual
-            touches = self._space.touches()
-            worst = int(touches.depth.argmax())
-            self._pair = (
-                self._names[int(touches.a[worst])],
-                self._names[int(touches.b[worst])],
-            )
+            worst = max(self._space.touches(), key=lambda touch: touch.depth)
+            self._pair = (self._names[worst.a], self._names[worst.b])
 
     def look(self, steps: int, time: float, seconds: float) -> None:
         """Look at the robots after so many steps, the last part of which took `seconds`."""
@@ -163,19 +159,17 @@ class Auditor:
         )
 
 
-def _held(touches: Touches, first: int) -> dict[int, tuple[float, int]]:
+def _held(touches: list[Touch], first: int) -> dict[int, tuple[float, int]]:
     """For each robot that touches something: the sum of impulses, and who has the largest.
 
     Robots are the solids from `first`. A pair's impulse stands at each of its points; of the
     points of a pair, the largest counts.
     """
     pairs: dict[tuple[int, int], float] = {}
-    for a, b, impulse in zip(
-        touches.a.tolist(), touches.b.tolist(), touches.impulse.tolist(), strict=True
-    ):
-        for one, other in ((a, b), (b, a)):
+    for touch in touches:
+        for one, other in ((touch.a, touch.b), (touch.b, touch.a)):
             if one >= first:
-                pairs[one, other] = max(pairs.get((one, other), 0.0), impulse)
+                pairs[one, other] = max(pairs.get((one, other), 0.0), touch.impulse)
     found: dict[int, tuple[float, int]] = {}
     largest: dict[int, float] = {}
     for (one, other), impulse in pairs.items():

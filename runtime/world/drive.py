@@ -12,6 +12,7 @@ from typing import Final, final
 
 import pymunk
 
+from runtime.world.chipmunk import aimer, compass
 from runtime.world.floor import GRAVITY
 from runtime.world.footprint import Spread
 from runtime.world.model import Body, Drive, DriveKind
@@ -96,9 +97,12 @@ class Differential:
         self._half = drive.track / 2.0
         x, y = solid.center_of_gravity
         self._centre = (x, y)
-        self._wheels = tuple(
+        right, left = (
             _ghost(space, solid, (0.0, side), self.grip / 2.0) for side in (-self._half, self._half)
         )
+        self._joints = (right[1], left[1])
+        self._right, self._left = aimer(right[0]), aimer(left[0])
+        self._heading_in = compass(solid)
         self._grips = True
         self._stands = False
 
@@ -112,26 +116,25 @@ class Differential:
         self.ramps.advance(self._solid, self._centre, seconds)
         if self._grips is self.ramps.is_free:
             self._grips = not self._grips
-            for _, joint in self._wheels:
+            for joint in self._joints:
                 joint.max_force = self.grip / 2.0 * (1.0 if self._grips else ROLLING)
         speed, _, turn = self.ramps.now
         if speed == 0.0 == turn:
             if not self._stands:
-                for wheel, _ in self._wheels:
-                    wheel.velocity = (0.0, 0.0)
+                self._right(0.0, 0.0)
+                self._left(0.0, 0.0)
             self._stands = True
             return
         self._stands = False
-        heading = _next_heading(self._solid, seconds)
+        heading = self._heading_in(seconds)  # at which the step finds velocities: it moves first
         cosine, sine = math.cos(heading), math.sin(heading)
         # Along the middle of the arc, so that turning while driving leaves no error of first order;
         # what differs between the wheels is a turn of the rigid axle as it is then.
         ahead = heading + 0.5 * turn * seconds
         x, y = speed * math.cos(ahead), speed * math.sin(ahead)
         apart = turn * self._half
-        (right, _), (left, _) = self._wheels
-        right.velocity = (x + apart * cosine, y + apart * sine)
-        left.velocity = (x - apart * cosine, y - apart * sine)
+        self._right(x + apart * cosine, y + apart * sine)
+        self._left(x - apart * cosine, y - apart * sine)
 
 
 @final
@@ -151,6 +154,7 @@ class Holonomic:
         self._solid = solid
         self._centre = (spread.x, spread.y)
         self._ghost, self._joint = _ghost(space, solid, self._centre, self.grip)
+        self._aim, self._heading_in = aimer(self._ghost), compass(solid)
         self._gear = pymunk.GearJoint(self._ghost, solid, 0.0, 1.0)
         self._gear.max_bias = 0.0
         self._torque = self.grip * spread.arm
@@ -173,9 +177,9 @@ class Holonomic:
         forward, left, turn = self.ramps.now
         # The channels say how the origin of the body moves; the ghost holds its centre of mass.
         forward, left = forward - turn * self._centre[1], left + turn * self._centre[0]
-        ahead = _next_heading(self._solid, seconds) + 0.5 * turn * seconds
+        ahead = self._heading_in(seconds) + 0.5 * turn * seconds
         cosine, sine = math.cos(ahead), math.sin(ahead)
-        self._ghost.velocity = (forward * cosine - left * sine, forward * sine + left * cosine)
+        self._aim(forward * cosine - left * sine, forward * sine + left * cosine)
         self._ghost.angular_velocity = turn
 
 
@@ -190,12 +194,6 @@ def local_velocity(solid: pymunk.Body, centre: tuple[float, float]) -> tuple[flo
     forward = cosine * u + sine * v + turn * centre[1]
     left = cosine * v - sine * u - turn * centre[0]
     return forward, left, turn
-
-
-def _next_heading(solid: pymunk.Body, seconds: float) -> float:
-    """The heading at which the coming step finds the next velocities: it moves bodies first."""
-    heading: float = solid.angle + solid.angular_velocity * seconds
-    return heading
 
 
 def _ghost(

@@ -5,12 +5,14 @@ then robots, then the walls. A footprint is a union of convex parts; the edges o
 together, counter-clockwise.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
 from runtime.arrays import Array, Integers
+from runtime.direct_calls import machine_code
 from runtime.world.kernels import nearness
 from runtime.world.model import Pose, Shape
 
@@ -112,13 +114,17 @@ class Plan:
         )
         # None is there yet: a pose that is no number differs from every other.
         self.geometry.poses[:-1] = np.nan
+        self._place: Callable[..., None] | None = None
         started = [(o.pose.x, o.pose.y, o.pose.heading) for o in outlines]
         self.place(np.array(started, dtype=np.float64).reshape(-1, 3), 0)
 
     def place(self, poses: Array, step: int) -> None:
-        """Bring things and robots to `poses` (owners - 1, 3), as they are after step `step`."""
+        """Bring things and robots to where they are after step `step`.
+
+        poses: (owners - 1, 3 or more), of which the first columns are x, y and heading.
+        """
         geometry = self.geometry
-        nearness.place(
+        given = (
             poses,
             step,
             geometry.poses,
@@ -130,6 +136,9 @@ class Plan:
             self._circles,
             geometry.discs,
         )
+        if self._place is None:
+            self._place = machine_code(nearness.place, given)
+        self._place(*given)
 
     def outline(self, owner: int) -> tuple[Array, Array]:
         """The edges (s, 4) and circles (d, 3) of a thing or a robot where it is: no copies."""

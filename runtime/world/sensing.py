@@ -12,11 +12,14 @@ import numpy as np
 
 from runtime.arrays import Array
 from runtime.chance import generator
+from runtime.direct_calls import machine_code
 from runtime.world.geometry import Geometry
-from runtime.world.light import ANYWHERE, LightMap, Sources, light_at
+from runtime.world.kernels.rays import nearest_hit, nearest_seen
+from runtime.world.kernels.shade import illuminance
+from runtime.world.light import ANYWHERE, LightMap, Sources
 from runtime.world.model import Body, DriveKind, Light, Sensor, SensorKind
 from runtime.world.odometry import Odometry
-from runtime.world.rays import View, half_cosine, least_range, nearest_visible, parts_of, spread
+from runtime.world.rays import View, half_cosine, parts_of, spread
 from runtime.world.world import Contact, Motion, SimulatedWorld
 
 
@@ -140,6 +143,9 @@ class _Scene:
         self.parts = parts_of(geometry)
         self.sources = Sources(lights, geometry)
         self.first, self.walls = geometry.things, geometry.things + geometry.robots
+        self._lux = machine_code(
+            illuminance, ((0.0, 0.0, 0.0), ANYWHERE, self.sources.rows, 0, self.parts)
+        )
 
     def pose(self, robot: int) -> tuple[float, float, float]:
         x, y, heading = self.around.geometry().poses[self.first + robot].tolist()
@@ -157,8 +163,7 @@ class _Scene:
 
     def lux(self, place: tuple[float, float, float], view: View, robot: int) -> float:
         self.sources.place()
-        rows, owner = self.sources.rows, self.first + robot
-        return light_at(self.parts, rows, place, view=view, skip=owner)
+        return self._lux(place, view, self.sources.rows, self.first + robot, self.parts)
 
 
 @final
@@ -184,20 +189,13 @@ class _Range:
 
     def __init__(self, scene: _Scene, robot: int, sensor: Sensor) -> None:
         self._scene, self._robot, self._sensor = scene, robot, sensor
-        self._turns = spread(sensor.width, sensor.rays)
+        turns, skip = spread(sensor.width, sensor.rays), scene.first + robot
+        self._rest = (turns, float(sensor.reach), float(sensor.height), skip, scene.parts)
+        self._nearest = machine_code(nearest_hit, ((0.0, 0.0, 0.0), *self._rest))
 
     def read(self) -> tuple[float, ...]:
-        sensor = self._sensor
-        place = self._scene.pose_of(self._robot, sensor)
-        least = least_range(
-            self._scene.parts,
-            place,
-            self._turns,
-            reach=sensor.reach,
-            height=sensor.height,
-            skip=self._scene.first + self._robot,
-        )
-        return (least,)
+        place = self._scene.pose_of(self._robot, self._sensor)
+        return (self._nearest(place, *self._rest),)
 
 
 @final
@@ -248,6 +246,9 @@ class _Sight:
             low, high = geometry.low[of].min(), geometry.high[of].max()
             self._targets[row, 2] = min(max(sensor.height, low), high)
         self._cosine = half_cosine(sensor.width)
+        self._rest = (self._targets, self._owners, own, scene.parts)
+        nobody = View(1.0, 0.0, self._cosine, float(sensor.reach))
+        self._nearest = machine_code(nearest_seen, ((0.0, 0.0, 0.0), nobody, *self._rest))
 
     def read(self) -> tuple[float, ...]:
         scene, sensor = self._scene, self._sensor
@@ -259,9 +260,7 @@ class _Sight:
         x, y, heading = scene.pose_of(self._robot, sensor)
         view = View(math.cos(heading), math.sin(heading), self._cosine, sensor.reach)
         eye = (x, y, sensor.height)
-        seen, distance = nearest_visible(
-            scene.parts, eye, view, self._targets, self._owners, skip=scene.first + self._robot
-        )
+        seen, distance = self._nearest(eye, view, *self._rest)
         if seen < 0:
             return 0.0, math.nan, math.nan
         to_x, to_y = self._targets[seen, 0] - x, self._targets[seen, 1] - y

@@ -1,18 +1,18 @@
-"""The space of the physics: bodies, shapes and walls from the model, and what can be read of them.
-
-Everything of pymunk's that has no promise to stay (its batches) is used here and nowhere else.
-"""
+"""The space of the physics: bodies, shapes and walls from the model, and what is read of them."""
 
 import math
 from dataclasses import dataclass
-from typing import Final, final
+from typing import Final, NamedTuple, final
 
 import numpy as np
 import pymunk
-from pymunk import batch
+from pymunk.batch import ArbiterFields, BodyFields
 
-from runtime.arrays import Array, Integers
+from runtime.arrays import Array
+from runtime.direct_calls import machine_code
+from runtime.world.chipmunk import Bodies, Contacts, stepper
 from runtime.world.footprint import Spread
+from runtime.world.kernels.speeds import largest
 from runtime.world.model import Pose, Shape
 
 ITERATIONS: Final = 20
@@ -28,24 +28,25 @@ PERSISTENCE: Final = 1
 """Steps that a contact is remembered: what is remembered is what touches now."""
 
 BODY: Final = (
-    batch.BodyFields.BODY_ID
-    | batch.BodyFields.POSITION
-    | batch.BodyFields.ANGLE
-    | batch.BodyFields.VELOCITY
-    | batch.BodyFields.ANGULAR_VELOCITY
+    BodyFields.BODY_ID
+    | BodyFields.POSITION
+    | BodyFields.ANGLE
+    | BodyFields.VELOCITY
+    | BodyFields.ANGULAR_VELOCITY
 )
-SPEEDS: Final = batch.BodyFields.VELOCITY | batch.BodyFields.ANGULAR_VELOCITY
-DEPTHS: Final = batch.ArbiterFields.DISTANCE_1 | batch.ArbiterFields.DISTANCE_2
+DEPTHS: Final = ArbiterFields.DISTANCE_1 | ArbiterFields.DISTANCE_2
 CONTACT: Final = (
-    batch.ArbiterFields.BODY_A_ID
-    | batch.ArbiterFields.BODY_B_ID
-    | batch.ArbiterFields.CONTACT_COUNT
-    | batch.ArbiterFields.TOTAL_IMPULSE
-    | batch.ArbiterFields.POINT_A_1
-    | batch.ArbiterFields.DISTANCE_1
-    | batch.ArbiterFields.POINT_A_2
-    | batch.ArbiterFields.DISTANCE_2
+    ArbiterFields.BODY_A_ID
+    | ArbiterFields.BODY_B_ID
+    | ArbiterFields.CONTACT_COUNT
+    | ArbiterFields.TOTAL_IMPULSE
+    | ArbiterFields.POINT_A_1
+    | ArbiterFields.DISTANCE_1
+    | ArbiterFields.POINT_A_2
+    | ArbiterFields.DISTANCE_2
 )
+WHOLE, REAL = 3, 8
+"""How many whole and real numbers a contact has in such a batch."""
 
 
 @final
@@ -62,29 +63,19 @@ class Solid:
 
 
 @final
-@dataclass(frozen=True, eq=False, slots=True)
-class Touches:
-    """Pairs of solids that touch now, a < b each, in a fixed order; the walls come last.
+class Touch(NamedTuple):
+    """A point at which two solids a < b touch; the walls come last.
 
-    a, b: (k,) numbers of solids. points: (k, 2) where, in the world. impulse: (k,) of the last
-    step, of all points of the pair's parts together (N s). depth: (k,) metres that outlines stand
-    in one another; negative where they only just touch.
+    x, y: in the world. impulse: of the last step, of all points of the two parts together (N s).
+    depth: metres that outlines stand in one another; negative where they only just touch.
     """
 
-    a: Integers
-    b: Integers
-    points: Array
-    impulse: Array
-    depth: Array
-
-
-NOTHING: Final = Touches(
-    np.zeros(0, dtype=np.int64),
-    np.zeros(0, dtype=np.int64),
-    np.zeros((0, 2)),
-    np.zeros(0),
-    np.zeros(0),
-)
+    a: int
+    b: int
+    x: float
+    y: float
+    impulse: float
+    depth: float
 
 
 @final
@@ -108,71 +99,70 @@ class Space:
         _enclose(self.space, arena, wall_friction)
         self._numbers = {body.id: number for number, body in enumerate(self.bodies)}
         self._numbers[self.space.static_body.id] = len(self.bodies)
-        self._buffer = batch.Buffer()
+        self._step = stepper(self.space)
+        self._all = Bodies(self.space, BODY, 6)
+        self._found: Array | None = None
+        self._largest = machine_code(largest, (self._all.read(),))
+        self._depths = Contacts(self.space, DEPTHS)
+        self._contacts = Contacts(self.space, CONTACT)
         self._arm = max((_arm(solid) for solid in solids if solid.mass is not None), default=0.0)
         self._order = b""
         self._rows = np.zeros(0, dtype=np.int64)
-        self._kept = np.zeros(0, dtype=np.int64)
 
     def states(self) -> Array:
         """Of all solids (n, 6): x, y, heading; velocity of the centre of mass x, y; turn rate."""
-        self._buffer.clear()
-        batch.get_space_bodies(self.space, BODY, self._buffer)
-        order = bytes(self._buffer.int_buf())
+        found = self._read()
+        order = self._all.order()
         if order != self._order:
             self._sort(order)
-        found = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 6)
-        states = np.empty((len(self.bodies), 6))
-        states[self._rows] = found[self._kept]
+        states: Array = found.take(self._rows, axis=0)
         return states
 
-    def deepest(self) -> float:
-        """How deep outlines stand in one another now, at the worst (m); -inf where none touch."""
-        self._buffer.clear()
-        batch.get_space_arbiters(self.space, DEPTHS, self._buffer)
-        depths = memoryview(self._buffer.float_buf()).cast("d")
+    def step(self, seconds: float) -> float:
+        """Let so many seconds pass; how deep outlines stand in one another then, at the worst (m).
+
+        -inf where none touch.
+        """
+        self._step(seconds)
+        self._found = None
         # A pair that touches at one point has 0 for the other, which is less deep than the skin.
-        least = float(min(depths, default=math.inf))
-        return -least - SLOP
+        return -min(self._depths.read(), default=math.inf) - SLOP
 
     def fastest(self) -> float:
         """A speed that no point of a body exceeds now (m/s)."""
-        self._buffer.clear()
-        batch.get_space_bodies(self.space, SPEEDS, self._buffer)
-        found = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 3)
-        x, y, turn = np.abs(found).max(axis=0).tolist()
-        speed: float = math.hypot(x, y) + turn * self._arm
-        return speed
+        x, y, turn = self._largest(self._read())
+        return math.hypot(x, y) + turn * self._arm
 
-    def touches(self) -> Touches:
-        """What touches now."""
-        self._buffer.clear()
-        batch.get_space_arbiters(self.space, CONTACT, self._buffer)
-        whole = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).reshape(-1, 3)
-        reals = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).reshape(-1, 8)
-        if not len(whole):
-            return NOTHING
-        rows = []
-        for (first, second, count), real in zip(whole.tolist(), reals.tolist(), strict=True):
-            a, b = sorted((self._numbers[first], self._numbers[second]))
-            impulse = float(np.hypot(real[0], real[1]))
-            rows += [
-                (a, b, real[2 + 3 * k], real[3 + 3 * k], impulse, -real[4 + 3 * k] - SLOP)
-                for k in range(count)
-            ]
+    def touches(self) -> list[Touch]:
+        """What touches now, in a fixed order."""
+        real = self._contacts.read()
+        if not real:
+            return []
+        whole, numbers = self._contacts.whole(), self._numbers
+        found = []
+        for row in range(len(real) // REAL):
+            first, second, count = whole[WHOLE * row : WHOLE * (row + 1)]
+            push_x, push_y, *points = real[REAL * row : REAL * (row + 1)]
+            a, b = sorted((numbers[first], numbers[second]))
+            impulse = math.hypot(push_x, push_y)
+            for k in range(count):
+                x, y, distance = points[3 * k : 3 * (k + 1)]
+                found.append(Touch(a, b, x, y, impulse, -distance - SLOP))
         # The physics keeps contacts by addresses, which differ from process to process.
-        table = np.array(sorted(rows), dtype=np.float64).reshape(-1, 6)
-        numbers = table[:, :2].astype(np.int64)
-        return Touches(numbers[:, 0], numbers[:, 1], table[:, 2:4], table[:, 4], table[:, 5])
+        return sorted(found)
+
+    def _read(self) -> Array:
+        """What the physics tells of all bodies, in its own order; read once after a step."""
+        if self._found is None:
+            self._found = self._all.read()
+        return self._found
 
     def _sort(self, order: bytes) -> None:
-        """Note which rows of a batch are which solids; they change as bodies fall asleep."""
+        """Note which row of a batch is which solid; they change as bodies fall asleep."""
         self._order = order
-        numbers = [self._numbers.get(int(i), -1) for i in np.frombuffer(order, dtype=np.uintp)]
-        kept = [row for row, number in enumerate(numbers) if 0 <= number < len(self.bodies)]
-        self._kept = np.array(kept, dtype=np.int64)
-        self._rows = np.array([numbers[row] for row in kept], dtype=np.int64)
-        assert len(kept) == len(self.bodies), "a batch holds all bodies"
+        bodies = np.frombuffer(order, dtype=np.uintp).tolist()
+        rows = {self._numbers.get(body, -1): row for row, body in enumerate(bodies)}
+        self._rows = np.array([rows[number] for number in range(len(self.bodies))], dtype=np.int64)
 
 
 def _arm(solid: Solid) -> float:

@@ -9,11 +9,12 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
-from typing import Final, Protocol, final
+from typing import Final, NamedTuple, Protocol, final
 
 import numpy as np
 
 from runtime.arrays import Array, Booleans
+from runtime.direct_calls import machine_code
 from runtime.world.audit import Audit, Auditor
 from runtime.world.drive import CHANNELS, Motor, drive_of, local_velocity
 from runtime.world.floor import FEET, Feet, feet_of, stand
@@ -23,7 +24,7 @@ from runtime.world.heights import bands
 from runtime.world.kernels import nearness
 from runtime.world.layout import Layout, lay_out
 from runtime.world.model import Body, Light, Pose, Shape, Thing, World
-from runtime.world.space import SLOP, Solid, Space, Touches
+from runtime.world.space import SLOP, Solid, Space, Touch
 
 LONGEST: Final = 1.0 / 200.0
 """Seconds of the longest step of the physics."""
@@ -51,8 +52,7 @@ class Inhabitant:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Contact:
+class Contact(NamedTuple):
     """A point at which a robot touches another owner.
 
     x, y: in the world. bearing: seen from the origin of the body, 0 ahead, in (-pi, pi].
@@ -65,8 +65,7 @@ class Contact:
 
 
 @final
-@dataclass(frozen=True, slots=True)
-class Motion:
+class Motion(NamedTuple):
     """How a body moves: the velocity of its origin in its own frame (m/s), and its turn (rad/s)."""
 
     forward: float
@@ -128,7 +127,8 @@ class SimulatedWorld:
         arena = np.array(model.arena, dtype=np.float64)
         self._space, self._motors = _built(self.layout, self.inhabitants, model, arena, feet)
         self._plan = Plan(*_outlines(self.layout, self.inhabitants), arena)
-        self._near = _overlapping(self._plan.geometry)
+        self._gap_of = _gaps(self._plan)
+        self._gaps = tuple(machine_code(nearness.gap, given) for given in self._gap_of)
         names = self._plan.geometry.names
         self._auditor = Auditor(self._space, names, self._motors, step)
         self._fewest = max(math.ceil(step / LONGEST - 1e-9), 1)
@@ -141,7 +141,7 @@ class SimulatedWorld:
         self._steps = 0
         self._states = self._space.states()
         self._states_at = self._placed_at = 0
-        self._touches: Touches | None = None
+        self._touches: list[Touch] | None = None
         self._senses = senses(self) if senses else None
 
     @property
@@ -175,10 +175,9 @@ class SimulatedWorld:
         for part in range(parts):
             for motor in self._motors:
                 motor.steer(seconds)
-            self._space.space.step(seconds)
+            depth = self._space.step(seconds)
             if self._senses is not None:
                 self._senses.advance(seconds)
-            depth = self._space.deepest()
             self._restless = SETTLED if depth > -math.inf else self._restless - seconds
             self._auditor.note(depth, self.time + (part + 1) * seconds)
         self._steps += 1
@@ -214,7 +213,7 @@ class SimulatedWorld:
     def geometry(self) -> Geometry:
         """What stands where now; the same object each time, brought up to date."""
         if self._placed_at != self._steps:
-            self._plan.place(self._now()[:, :3].copy(), self._steps)
+            self._plan.place(self._now(), self._steps)
             self._placed_at = self._steps
         return self._plan.geometry
 
@@ -222,26 +221,21 @@ class SimulatedWorld:
         """Where a robot touches something now, in a fixed order."""
         if self._touches is None:
             self._touches = self._space.touches()
-        touches = self._touches
         owner = len(self.layout.things) + robot
-        ours = ((touches.a == owner) | (touches.b == owner)).nonzero()[0].tolist()
+        ours = [touch for touch in self._touches if owner in (touch.a, touch.b)]
         if not ours:
             return ()
         x, y, heading = self._now()[owner, :3].tolist()
         found = []
-        for row in ours:
-            u, v = touches.points[row].tolist()
-            bearing = math.remainder(math.atan2(v - y, u - x) - heading, math.tau)
-            found.append(Contact(int(touches.a[row] + touches.b[row]) - owner, u, v, bearing))
+        for touch in ours:
+            bearing = math.remainder(math.atan2(touch.y - y, touch.x - x) - heading, math.tau)
+            found.append(Contact(touch.a + touch.b - owner, touch.x, touch.y, bearing))
         return tuple(found)
 
     def clearance(self, robot: int) -> float:
         """How far a robot is from the nearest other thing or wall at any of its heights (m)."""
-        geometry = self.geometry()
-        edges, circles = self._plan.outline(geometry.things + robot)
-        return nearness.gap(
-            edges, circles, geometry.segments, geometry.discs, self._near[robot], np.inf
-        )
+        self.geometry()
+        return self._gaps[robot](*self._gap_of[robot])
 
     def audit(self) -> Audit:
         """How deep bodies stood in one another, and which robots were stuck, up to now."""
@@ -332,13 +326,15 @@ def _outlines(
     return things, robots
 
 
-def _overlapping(geometry: Geometry) -> tuple[Booleans, ...]:
-    """For each robot the edges and circles of others that stand at one of its heights."""
-    found = []
+def _gaps(plan: Plan) -> tuple[tuple[Array, Array, Array, Array, Booleans, float], ...]:
+    """For each robot what tells how far it is from others that stand at one of its heights."""
+    geometry, found = plan.geometry, []
     for robot in range(geometry.robots):
         ours = geometry.owner == geometry.things + robot
         low, high = geometry.low[ours].min(), geometry.high[ours].max()
-        found.append(~ours & (geometry.low < high) & (geometry.high > low))
+        near = ~ours & (geometry.low < high) & (geometry.high > low)
+        edges, circles = plan.outline(geometry.things + robot)
+        found.append((edges, circles, geometry.segments, geometry.discs, near, math.inf))
     return tuple(found)
 
 

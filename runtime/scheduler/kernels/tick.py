@@ -31,6 +31,8 @@ mode changed."""
 AS_RATE, AS_NEXT, AS_ENTRY, AS_OUTPUT = 0, 1, 2, 3
 """What a command takes: the rate of a state, its value one period on, an entry of the register as
 it is at the sample, or an output."""
+NOTHING, OWN, COMMANDS = 0, 1, 2
+"""What looks ahead; where nothing is to be found out, it does not."""
 ENTRY, INHIBITS = 0, 1
 """Columns of `Frame.inputs`."""
 SCALE, LOW, HIGH = 0, 1, 2
@@ -51,6 +53,8 @@ class Frame(NamedTuple):
     period (0: not periodic) of each own state. commands: (c, 2) what it takes, and of which state,
     entry or output; signs: (c,).
     period: seconds. mode: the state that holds it, or -1. outputs: how many. is_map: 0 or 1.
+    looks_ahead: what is taken from the state one period on: `NOTHING`, own states where it has its
+    way (`OWN`), or commands too (`COMMANDS`).
     work, rest_work: the rows of both tapes, literals in place. room: (9, n).
     """
 
@@ -70,6 +74,7 @@ class Frame(NamedTuple):
     mode: int
     outputs: int
     is_map: int
+    looks_ahead: int
     work: Array
     rest_work: Array
     room: Array
@@ -203,7 +208,10 @@ def _settle(frame: Frame, x: Array) -> int:
 
 @part
 def _ahead(frame: Frame, x: Array, new: Array, commits: int, settled: int) -> int:
-    """The state one period on, without noise; the rates at the sample stay in row 2 of the room."""
+    """The state one period on, without noise; the rates at the sample stay in row 2 of the room.
+
+    Where nobody takes it, it is only told whether the rates are finite: by a single step of Euler.
+    """
     for i in range(x.shape[0]):
         new[i] = x[i]
     first = frame.room[2]
@@ -213,6 +221,10 @@ def _ahead(frame: Frame, x: Array, new: Array, commits: int, settled: int) -> in
             i = frame.moving[j]
             new[i] = first[i]
             first[i] = (first[i] - x[i]) / frame.period
+        return 0
+    if frame.looks_ahead == NOTHING or (frame.looks_ahead == OWN and commits == 0):
+        for i in range(x.shape[0]):
+            new[i] = x[i] + frame.period * first[i]
         return 0
     h = frame.period / PARTS
     here = frame.room[4]

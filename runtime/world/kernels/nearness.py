@@ -111,15 +111,15 @@ def place(
     local_circles: Array,
     circles: Array,
 ) -> None:
-    """Bring owners to the poses `wanted` (n, 3), and the rows of those that moved with them.
+    """Bring owners to the poses `wanted` (n, 3 or more), and what moved of their rows with them.
 
     first_edges, first_circles: (n + 1,) the first row of each owner. The rest as in `Geometry`.
     """
     for owner in range(len(wanted)):
-        x, y, heading = wanted[owner]
+        x, y, heading = wanted[owner, 0], wanted[owner, 1], wanted[owner, 2]
         if x == poses[owner, 0] and y == poses[owner, 1] and heading == poses[owner, 2]:
             continue
-        poses[owner] = wanted[owner]
+        poses[owner, 0], poses[owner, 1], poses[owner, 2] = x, y, heading
         moved[owner] = step
         cosine, sine = math.cos(heading), math.sin(heading)
         for row in range(first_edges[owner], first_edges[owner + 1]):

@@ -85,7 +85,7 @@ def test_a_robot_that_pushes_a_wall_stalls_and_its_wheels_slip() -> None:
     assert sim.motion(0).forward == pytest.approx(0.0, abs=1e-6)
     assert sim.commanded(0).forward == 0.5
     touches = sim._space.touches()
-    assert touches.impulse[0] / sim.step == pytest.approx(0.8 * 3.0 * 9.81, rel=1e-3)
+    assert touches[0].impulse / sim.step == pytest.approx(0.8 * 3.0 * 9.81, rel=1e-3)
 
 
 def test_no_box_is_pushed_through_a_wall() -> None:
