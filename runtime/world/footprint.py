@@ -16,7 +16,7 @@ CELLS: Final = 48
 """Cells along the longer side of a footprint, where it is taken as points."""
 FEWEST: Final = 12
 """Cells along its shorter side, at least."""
-ENOUGH: Final = 100
+ENOUGH: Final = 400
 FINEST: Final = 1000
 
 
