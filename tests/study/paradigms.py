@@ -1,55 +1,191 @@
-"""One task, three paradigms, the same behaviors: find the light without touching anything.
+"""Three tasks, each done by three paradigms with the same behaviors, and by chance.
 
-Run it: `python -m tests.study.paradigms [--worlds 50] [--first 1000]`. The architectures were tuned
-in the worlds of the seeds 0 to 19; those from 1000 on were not looked at while building.
-A robot succeeds that is in the light within 120 s and touches nothing in all of them.
+Run it: `python -m tests.study.paradigms [light patrol tidy] [--first 1000] [--worlds 50]`.
+A world is left as soon as it is decided whether all that the scenario requires holds; that this is
+what its sentences say is tested in tests/specc/test_paradigms.py.
+Seeds from 2000 on were for building; docs/paradigms.md says which were kept for the tables.
 """
 
 import argparse
 import dataclasses
+import math
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, final
 
 import numpy as np
+from scipy.stats import binomtest
 
+from runtime.arrays import Array, Booleans
 from runtime.artifact import to_bytes
 from runtime.scenario import Scenario
+from runtime.scheduler.environment import Delivery
+from runtime.scheduler.observer import Event, Tick
 from runtime.scheduler.scheduler import Scheduler
 from runtime.scheduler.sensors import SensorBank
 from runtime.world.sensing import senses_of
 from runtime.world.world import Inhabitant, SimulatedWorld
-from specc.loading import compile_scenario_spec, compile_spec
+from specc.loading import compile_scenario_spec
 
 ROOT = Path(__file__).parents[2]
 PARADIGMS = ("subsumption", "hierarchy", "dynamics", "random")
-BEHAVIORS = ("avoid", "phototaxis", "wander")
 BRIGHT = 10.0
 """Lux: in the light."""
+WALL = 0.35
+"""Metres from a wall: tidy."""
+POSTS = ((0.8, 0.8), (5.2, 3.2))
+THERE, SELDOM = 0.9, 100.0
+"""Metres from a post: there. Seconds: it must have been there within them."""
+FLAT = 0.99
+"""Share of the battery that is used: flat."""
 LOOK = 2
-"""Steps between two looks at the clearance: at 0.4 m/s it moves by 4 mm in them."""
+"""Steps between two looks: at 0.4 m/s a robot moves by 4 mm in them."""
 
 
 class Outcome(NamedTuple):
-    """When (s) it came into the light and when it first touched something; None for never."""
+    """Of one world: success, a time (s, nan for none), and how often it began to touch."""
 
-    lit: float | None
-    touched: float | None
+    succeeded: bool
+    time: float
+    contacts: int
 
-    @property
-    def succeeded(self) -> bool:
-        return self.lit is not None and self.touched is None
+
+class Task(Protocol):
+    """What is to be done in one world."""
+
+    is_the: str
+
+    def decided(self, world: SimulatedWorld, time: float, used: float) -> bool | None:
+        """Whether it has succeeded or failed by now; None where that is open."""
+        ...
+
+    def time(self, end: float) -> float:
+        """The time that is told of a success."""
+        ...
+
+
+@final
+class FindLight:
+    """Touch nothing until it is in the light."""
+
+    is_the = "until it is in the light"
+
+    def __init__(self, scenario: Scenario) -> None:
+        sensors = scenario.robots[0].body.sensors
+        self._lamp = [sensor.name for sensor in sensors].index("lamp")
+
+    def decided(self, world: SimulatedWorld, time: float, used: float) -> bool | None:  # noqa: ARG002
+        """Lit, or touched."""
+        if world.sample(0, self._lamp)[0] > BRIGHT:
+            return True
+        return False if world.clearance(0) <= 0.0 else None
+
+    def time(self, end: float) -> float:
+        """When it was there."""
+        return end
+
+
+@final
+class Patrol:
+    """Be at each post again and again, touch nothing, and never let the battery go flat."""
+
+    is_the = "from a post to the other"
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._duration = scenario.duration
+        self._last = [0.0, 0.0]
+        self._arrivals: list[tuple[float, int]] = []
+
+    def decided(self, world: SimulatedWorld, time: float, used: float) -> bool | None:
+        """Touched, flat or too late; or it has come to the end."""
+        x, y = world.poses()[-1, :2]
+        for post, (east, north) in enumerate(POSTS):
+            if math.hypot(x - east, y - north) < THERE:
+                self._last[post] = time
+                if not self._arrivals or self._arrivals[-1][1] != post:
+                    self._arrivals.append((time, post))
+        if world.clearance(0) <= 0.0 or used >= FLAT or time - min(self._last) > SELDOM:
+            return False
+        return True if time >= self._duration - 1e-9 else None
+
+    def time(self, end: float) -> float:  # noqa: ARG002  as of others
+        """The mean over its ways."""
+        return float(np.mean(np.diff([time for time, _ in self._arrivals])))
+
+
+@final
+class Tidy:
+    """Push every crate to a wall."""
+
+    is_the = "until all crates are at walls"
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._room = np.array(scenario.world.arena).max(axis=0)
+
+    def decided(self, world: SimulatedWorld, time: float, used: float) -> bool | None:  # noqa: ARG002
+        """All are there."""
+        places = world.poses()[:-1, :2]
+        nearest = np.minimum(places, self._room - places).min(axis=1)
+        return True if np.all(nearest < WALL) else None
+
+    def time(self, end: float) -> float:
+        """When they were."""
+        return end
+
+
+TASKS: dict[str, type[FindLight | Patrol | Tidy]] = {
+    "light": FindLight,
+    "patrol": Patrol,
+    "tidy": Tidy,
+}
+
+
+@final
+class Account:
+    """Keeps what the battery says of itself."""
+
+    def __init__(self, node: int) -> None:
+        self._node, self.used = node, 0.0
+
+    def ticked(self, instant: int, tick: Tick) -> None:  # noqa: ARG002
+        """Its first state is what is used."""
+        if tick.node == self._node:
+            self.used = float(tick.register[0])
+
+    def sensed(self, instant: int, delivery: Delivery) -> None:
+        """Do nothing."""
+
+    def acting(self, instant: int, robot: int, acts: Booleans, weights: Array) -> None:
+        """Do nothing."""
+
+    def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
+        """Do nothing."""
+
+    def happened(self, instant: int, event: Event) -> None:
+        """Do nothing."""
 
 
 @cache
-def scenario_of(paradigm: str) -> Scenario:
-    """The compiled scenario of a paradigm."""
-    return compile_scenario_spec(ROOT / "specs" / "scenarios" / f"light_{paradigm}.yaml").scenario
+def scenario_of(task: str, paradigm: str) -> Scenario:
+    """The compiled scenario of a task and a paradigm."""
+    path = ROOT / "specs" / "scenarios" / f"{task}_{paradigm}.yaml"
+    return compile_scenario_spec(path).scenario
 
 
-def started(scenario: Scenario) -> tuple[SimulatedWorld, Scheduler]:
+def hashes_of(task: str, paradigm: str) -> dict[str, str]:
+    """The base behaviors, each with a hash of its artifact."""
+    programs = scenario_of(task, paradigm).robots[0].architecture.programs
+    return {
+        program.name: blake2b(to_bytes(program), digest_size=8).hexdigest()
+        for program in programs
+        if not program.name.endswith("_mission")
+    }
+
+
+def started(scenario: Scenario, account: Account) -> tuple[SimulatedWorld, Scheduler]:
     """A world with a scheduler that drives the robots in it, at instant 0."""
     inhabitants = [
         Inhabitant(
@@ -65,63 +201,76 @@ def started(scenario: Scenario) -> tuple[SimulatedWorld, Scheduler]:
     )
     robots = [(robot.name, robot.body) for robot in scenario.robots]
     sensors = SensorBank(robots, world, scenario.step, scenario.seed)
-    return world, Scheduler(scenario, world, sensors)
+    return world, Scheduler(scenario, world, sensors, observer=account)
 
 
-def outcome(paradigm: str, seed: int) -> Outcome:
-    """What becomes of one robot in one world; it ends with the first touch."""
-    scenario = dataclasses.replace(scenario_of(paradigm), seed=seed)
-    world, scheduler = started(scenario)
-    lamp = [sensor.name for sensor in scenario.robots[0].body.sensors].index("lamp")
-    lit = None
-    for _ in range(round(scenario.duration / scenario.step / LOOK)):
-        if lit is None and world.sample(0, lamp)[0] > BRIGHT:
-            lit = scheduler.time
-        if world.clearance(0) <= 0.0:
-            return Outcome(lit, scheduler.time)
+def outcome(task: str, paradigm: str, seed: int) -> Outcome:
+    """What becomes of a robot in one world; it ends where that is decided."""
+    scenario = dataclasses.replace(scenario_of(task, paradigm), seed=seed)
+    nodes = [node.name for node in scenario.robots[0].architecture.nodes]
+    account = Account(nodes.index("battery") if "battery" in nodes else -1)
+    world, scheduler = started(scenario, account)
+    judge = TASKS[task](scenario)
+    contacts, touches = 0, False
+    for _ in range(round(scenario.duration / scenario.step / LOOK) + 1):
+        touched, touches = touches, world.clearance(0) <= 0.0
+        contacts += touches and not touched
+        succeeded = judge.decided(world, scheduler.time, account.used)
+        if succeeded is not None:
+            return Outcome(
+                succeeded, judge.time(scheduler.time) if succeeded else math.nan, contacts
+            )
         scheduler.run(LOOK)
-    return Outcome(lit, None)
+    return Outcome(succeeded=False, time=math.nan, contacts=contacts)
 
 
-def table(first: int, worlds: int, workers: int) -> None:
-    """Print a line for each paradigm."""
+def line_of(paradigm: str, found: Sequence[Outcome]) -> str:
+    """A line of the table: success with its 95 % interval (Wilson), times, contacts."""
+    good = [each for each in found if each.succeeded]
+    sure = binomtest(len(good), len(found)).proportion_ci(method="wilson")
+    times = np.array([each.time for each in good])
+    times = times[np.isfinite(times)]
+    middle = f"{np.median(times):.0f} s" if times.size else "-"
+    range_ = f"{times.min():.0f} to {times.max():.0f} s" if times.size else "-"
+    touched = np.array([each.contacts for each in found])
+    return (
+        f"| {paradigm} | {len(good)} of {len(found)} | {100 * len(good) / len(found):.0f} % "
+        f"({100 * sure.low:.0f} to {100 * sure.high:.0f} %) | {middle} | {range_} "
+        f"| {np.mean(touched):.1f} | {np.count_nonzero(touched)} |"
+    )
+
+
+def table(task: str, first: int, worlds: int, workers: int) -> None:
+    """Print a line for each paradigm, and which behaviors it has."""
+    hashes = {paradigm: hashes_of(task, paradigm) for paradigm in PARADIGMS}
+    print(f"\n{task}: the worlds of seeds {first} to {first + worlds - 1}")
+    for name, digest in sorted(hashes[PARADIGMS[0]].items()):
+        others = [each.get(name) == digest for each in hashes.values()]
+        print(f"  {name:14} {digest}  {'the same' if all(others) else 'NOT THE SAME'} in all four")
+    print(
+        f"| paradigm | success | share (95 %) | median time {TASKS[task].is_the} | from, to |",
+        end="",
+    )
+    print(" contacts a world | worlds with contact |\n|---|---|---|---|---|---|---|", flush=True)
     seeds = range(first, first + worlds)
-    print(f"{'paradigm':12} success  median time  in the light  touched   ({worlds} worlds)")
     with ProcessPoolExecutor(workers) as pool:
         for paradigm in PARADIGMS:
-            found = list(pool.map(outcome, [paradigm] * worlds, seeds))
-            good = [each for each in found if each.succeeded]
-            times = [each.lit for each in good if each.lit is not None]
-            lit = sum(each.lit is not None for each in found)
-            touched = sum(each.touched is not None for each in found)
-            share = 100.0 * len(good) / worlds
-            middle = float(np.median(times)) if times else np.nan
+            found = list(pool.map(outcome, [task] * worlds, [paradigm] * worlds, seeds))
             failed = [s for s, each in zip(seeds, found, strict=True) if not each.succeeded]
-            print(
-                f"{paradigm:12} {share:5.0f} %  {middle:9.1f} s  {lit:12d}  {touched:7d}   "
-                f"failed: {failed}",
-                flush=True,
-            )
+            print(line_of(paradigm, found), flush=True)
+            print(f"  failed: {failed}", flush=True)
 
 
 def main() -> None:
-    """Print the table, and what the paradigms have in common."""
+    """Print a table for each task."""
     parser = argparse.ArgumentParser()
+    parser.add_argument("tasks", nargs="*", default=list(TASKS))
     parser.add_argument("--worlds", type=int, default=50)
     parser.add_argument("--first", type=int, default=1000)
     parser.add_argument("--workers", type=int, default=2)
     given = parser.parse_args()
-    for name in BEHAVIORS:
-        artifact = to_bytes(compile_spec(ROOT / "specs" / f"{name}.yaml").program)
-        print(f"{name:12} {blake2b(artifact, digest_size=8).hexdigest()}")
-    for paradigm in PARADIGMS:
-        architecture = scenario_of(paradigm).robots[0].architecture
-        told = [
-            blake2b(to_bytes(program), digest_size=8).hexdigest()
-            for program in architecture.programs
-        ]
-        print(f"{paradigm:12} runs {' '.join(told)}")
-    table(given.first, given.worlds, given.workers)
+    for task in given.tasks:
+        table(task, given.first, given.worlds, given.workers)
 
 
 if __name__ == "__main__":
