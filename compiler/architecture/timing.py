@@ -12,7 +12,7 @@ from compiler.architecture.parts import Part, Parts, is_read
 from compiler.findings import Findings
 from runtime.architecture import Choice, Input
 from runtime.arrays import Array
-from runtime.flow import Flow, Source, flow_of, in_one_mode, jacobian
+from runtime.flow import Source, flow_of, in_one_mode, jacobian
 from runtime.program import Kind, Program
 from spec_schema.places import Path
 
@@ -52,6 +52,8 @@ def check_timing(
             continue
         if part.program.field.is_map:
             _check_map(part, part.program, findings)
+        elif not _is_known(part.program):
+            _tell_unchecked(part, part.program, findings)
         else:
             fastest = fastest_of(part.program, reach_of(part, inputs, choices, parts))
             _check_lag(part, part.program, fastest, findings)
@@ -64,6 +66,32 @@ def _check_map(part: Part, program: Program, findings: Findings) -> None:
         message = f"{program.name} is a map that makes a step every {seconds(every)}"
         remedy = f"write 'period: {seconds(every)}'"
         findings.error("S351", (*part.path, "period"), message, remedy)
+
+
+def _tell_unchecked(part: Part, program: Program, findings: Findings) -> None:
+    """A warning where the rates of the field that feeds back are not known yet."""
+    if _fed_back(program):
+        form = program.field.form
+        message = (
+            f"whether {part.name} answers in time is not checked here: {program.name} gives its "
+            f"field by `{form}`, whose rates are known only once it is compiled"
+        )
+        remedy = "run `specc compile` on this architecture: it tells"
+        findings.warning("S354", (*part.path, "period"), message, remedy)
+
+
+def _is_known(program: Program) -> bool:
+    """Whether the field is there: as tables, or as a formula."""
+    return bool(program.field.terms) or program.field.formula is not None
+
+
+def _fed_back(program: Program) -> list[int]:
+    """The states that are sensed as well as driven, by place."""
+    return [
+        i
+        for i, state in enumerate(program.states)
+        if is_read(state, program) and state.is_driven and state.kind is not Kind.DISCRETE
+    ]
 
 
 def _check_lag(part: Part, program: Program, fastest: Fastest, findings: Findings) -> None:
@@ -94,14 +122,10 @@ def fastest_of(program: Program, reach: Mapping[str, tuple[float, float]]) -> Fa
     Over the states that are sensed as well as driven; controls where they may `reach` (in
     the architecture). Sampled at points that do not depend on anything but the program.
     """
-    back = [
-        i
-        for i, state in enumerate(program.states)
-        if is_read(state, program) and state.is_driven and state.kind is not Kind.DISCRETE
-    ]
-    flow = None if not back else _flow(program)
-    if flow is None:
+    back = _fed_back(program)
+    if not back:
         return Fastest(0.0, {})
+    flow = flow_of(program) if program.field.terms else flow_of(program, Source.FORMULA)
     x, u = _points(program, reach)
     with np.errstate(all="ignore"):
         slopes = jacobian(in_one_mode(flow), x, u)[:, back][:, :, back]
@@ -114,13 +138,6 @@ def fastest_of(program: Program, reach: Mapping[str, tuple[float, float]]) -> Fa
     where = x[known][place][back]
     found = dict(zip(names, map(float, where), strict=True))
     return Fastest(float(rates[place]), found)
-
-
-def _flow(program: Program) -> Flow | None:
-    """The field as it runs, else its formula; None where nothing was tabulated yet."""
-    if program.field.terms:
-        return flow_of(program)
-    return None if program.field.formula is None else flow_of(program, Source.FORMULA)
 
 
 def _points(program: Program, reach: Mapping[str, tuple[float, float]]) -> tuple[Array, Array]:
