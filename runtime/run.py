@@ -23,13 +23,13 @@ from runtime.recording.tracks import (
 from runtime.scenario import Scenario
 from runtime.scheduler.nodes import Learner
 from runtime.scheduler.observer import Observer, Silent
-from runtime.scheduler.scheduler import NO_LEARNERS, Scheduler
-from runtime.scheduler.sensors import SensorBank
+from runtime.scheduler.scheduler import NO_LEARNERS
+from runtime.start import started
 from runtime.world.audit import Audit
 from runtime.world.layout import Layout
 from runtime.world.light import LightMap
-from runtime.world.sensing import Senses, senses_of
-from runtime.world.world import Inhabitant, SimulatedWorld
+from runtime.world.sensing import Senses
+from runtime.world.world import SimulatedWorld
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Is told how many steps of how many are done."""
@@ -94,18 +94,10 @@ def run(
         NoRoomError: there is no room for what is placed at random.
         UserCodeError: code of the user's own may not be run, is not found, or raised.
     """
-    world, senses = _world(scenario)
-    robots = [(robot.name, robot.body) for robot in scenario.robots]
     gathering = Gathering(scenario, observer or Silent())
-    scheduler = Scheduler(
-        scenario,
-        world,
-        SensorBank(robots, world, scenario.step, scenario.seed),
-        allow_code=allow_code,
-        observer=gathering,
-        learners=learners,
-    )
-    watch = _Watch(scenario, world, senses, light_every, seen)
+    begun = started(scenario, allow_code=allow_code, learners=learners, observer=gathering)
+    world, scheduler = begun.world, begun.scheduler
+    watch = _Watch(scenario, world, begun.senses, light_every, seen)
     steps = max(round(scenario.duration / scenario.step), 1)
     every = max(steps // TOLD, 1)
     for done in range(steps):
@@ -130,29 +122,6 @@ def run(
         audit=world.audit(),
         digest=scheduler.state_hash(),
     )
-
-
-def _world(scenario: Scenario) -> tuple[SimulatedWorld, Senses]:
-    """The world of a scenario, laid out, and the senses in it."""
-    made: list[Senses] = []
-
-    def sensing(world: SimulatedWorld) -> Senses:
-        made.append(senses_of(world))
-        return made[0]
-
-    inhabitants = [
-        Inhabitant(
-            robot.name,
-            robot.body,
-            robot.start.pose,
-            tuple(channel.name for channel in robot.architecture.channels),
-        )
-        for robot in scenario.robots
-    ]
-    world = SimulatedWorld(
-        scenario.world, inhabitants, scenario.step, scenario.seed, senses=sensing
-    )
-    return world, made[0]
 
 
 @final

@@ -10,11 +10,8 @@ import numpy as np
 from compiler.world.scenario import CompiledScenario, compile_scenario
 from runtime.arrays import Array
 from runtime.scenario import Scenario
-from runtime.scheduler.observer import Observer, Silent
-from runtime.scheduler.scheduler import Scheduler
-from runtime.scheduler.sensors import SensorBank
-from runtime.world.sensing import senses_of
-from runtime.world.world import Inhabitant, SimulatedWorld
+from runtime.scheduler.observer import Observer
+from runtime.start import started
 
 PROBE = """
 shape: {circle: 12 cm}
@@ -151,18 +148,9 @@ class Started:
     def __init__(
         self, made: Scenario, observer: Observer | None = None, *, allow_code: bool = False
     ) -> None:
-        channels = [[c.name for c in robot.architecture.channels] for robot in made.robots]
-        inhabitants = [
-            Inhabitant(robot.name, robot.body, robot.start.pose, tuple(names))
-            for robot, names in zip(made.robots, channels, strict=True)
-        ]
+        begun = started(made, allow_code=allow_code, observer=observer)
         self.scenario = made
-        self.world = SimulatedWorld(made.world, inhabitants, made.step, made.seed, senses=senses_of)
-        robots = [(robot.name, robot.body) for robot in made.robots]
-        sensors = SensorBank(robots, self.world, made.step, made.seed)
-        self.scheduler = Scheduler(
-            made, self.world, sensors, allow_code=allow_code, observer=observer or Silent()
-        )
+        self.world, self.scheduler = begun.world, begun.scheduler
 
     def steps(self, seconds: float | None = None) -> Iterator[float]:
         """Step by step to the end, or so many seconds; gives the time after each."""

@@ -24,10 +24,8 @@ from runtime.artifact import to_bytes
 from runtime.scenario import Scenario
 from runtime.scheduler.environment import Delivery
 from runtime.scheduler.observer import Event, Tick
-from runtime.scheduler.scheduler import Scheduler
-from runtime.scheduler.sensors import SensorBank
-from runtime.world.sensing import senses_of
-from runtime.world.world import Inhabitant, SimulatedWorld
+from runtime.start import started
+from runtime.world.world import SimulatedWorld
 from specc.loading import compile_scenario_spec
 
 ROOT = Path(__file__).parents[2]
@@ -185,31 +183,13 @@ def hashes_of(task: str, paradigm: str) -> dict[str, str]:
     }
 
 
-def started(scenario: Scenario, account: Account) -> tuple[SimulatedWorld, Scheduler]:
-    """A world with a scheduler that drives the robots in it, at instant 0."""
-    inhabitants = [
-        Inhabitant(
-            robot.name,
-            robot.body,
-            robot.start.pose,
-            tuple(channel.name for channel in robot.architecture.channels),
-        )
-        for robot in scenario.robots
-    ]
-    world = SimulatedWorld(
-        scenario.world, inhabitants, scenario.step, scenario.seed, senses=senses_of
-    )
-    robots = [(robot.name, robot.body) for robot in scenario.robots]
-    sensors = SensorBank(robots, world, scenario.step, scenario.seed)
-    return world, Scheduler(scenario, world, sensors, observer=account)
-
-
 def outcome(task: str, paradigm: str, seed: int) -> Outcome:
     """What becomes of a robot in one world; it ends where that is decided."""
     scenario = dataclasses.replace(scenario_of(task, paradigm), seed=seed)
     nodes = [node.name for node in scenario.robots[0].architecture.nodes]
     account = Account(nodes.index("battery") if "battery" in nodes else -1)
-    world, scheduler = started(scenario, account)
+    begun = started(scenario, observer=account)
+    world, scheduler = begun.world, begun.scheduler
     judge = TASKS[task](scenario)
     contacts, touches = 0, False
     for _ in range(round(scenario.duration / scenario.step / LOOK) + 1):
