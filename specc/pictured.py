@@ -1,15 +1,17 @@
 """A run as pictures draw it: the scene, everybody's trail, and what was required."""
 
 from collections.abc import Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, final
 
 import numpy as np
 
 from runtime.architecture import Architecture, Way
 from runtime.arrays import Array, Booleans, Integers
-from runtime.recording.tracks import ActingTrack, SensorTrack
+from runtime.recording.tracks import ActingTrack, LightFrames, SensorTrack, Touch
 from runtime.run import Run
 from runtime.scenario import Robot, Scenario
+from runtime.world.audit import Jam
 from runtime.world.model import Sensor, SensorKind, Thing
 from specc.figures.quantities import quantity, seconds
 from specc.figures.scene import (
@@ -40,10 +42,15 @@ EYES: Final = {
 
 def pictured(made: Run, requirements: Sequence[RequirementResult]) -> tuple[Scene, Trails]:
     """What posters and films show of a run; the light where the run kept it."""
-    glow = None
-    if made.floor is not None and made.scenario.world.lights:
-        glow = Glow(made.floor.xs, made.floor.ys, made.floor.times, made.floor.lux)
-    return scene_of(made.scenario, made.layout.things, glow), _trails(made, requirements)
+    scene = scene_of(made.scenario, made.layout.things, glow_of(made.scenario, made.floor))
+    return scene, trails_of(course_of(made), requirements)
+
+
+def glow_of(scenario: Scenario, floor: LightFrames | None) -> Glow | None:
+    """The light on the floor, where there are lights and it was kept."""
+    if floor is None or not scenario.world.lights:
+        return None
+    return Glow(floor.xs, floor.ys, floor.times, floor.lux)
 
 
 def scene_of(scenario: Scenario, things: Sequence[Thing], glow: Glow | None = None) -> Scene:
@@ -96,35 +103,66 @@ def said_now(sensor: Sensor, readings: Array) -> Said:
     return said_of(sensor, SensorTrack(np.zeros(1), readings[np.newaxis]))
 
 
-def _trails(made: Run, requirements: Sequence[RequirementResult]) -> Trails:
-    times, count = made.world.times, len(made.layout.things)
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Course:
+    """What a run was, or its recording tells of it, as far as it is drawn.
+
+    poses: (T, things + robots, 3) at times (T,). acting, sensors: of each robot, in its order.
+    """
+
+    times: Array
+    poses: Array
+    robots: tuple[Robot, ...]
+    acting: tuple[ActingTrack, ...]
+    sensors: tuple[tuple[SensorTrack, ...], ...]
+    touches: tuple[Touch, ...]
+    jams: tuple[Jam, ...]
+
+
+def course_of(made: Run) -> Course:
+    """What is drawn of a run."""
+    return Course(
+        made.world.times,
+        made.world.poses,
+        made.scenario.robots,
+        tuple(track.acting for track in made.robots),
+        tuple(track.sensors for track in made.robots),
+        made.touches,
+        made.audit.jams,
+    )
+
+
+def trails_of(course: Course, requirements: Sequence[RequirementResult]) -> Trails:
+    """Everybody's trail, with what happened on it, and what was required."""
+    times, count = course.times, course.poses.shape[1] - len(course.robots)
     doing = [
-        who_acts(robot.architecture, track.acting, times)
-        for robot, track in zip(made.scenario.robots, made.robots, strict=True)
+        who_acts(robot.architecture, acting, times)
+        for robot, acting in zip(course.robots, course.acting, strict=True)
     ]
-    robots = [robot.name for robot in made.scenario.robots]
-    poses = made.world.poses[:, count:]
+    robots = [robot.name for robot in course.robots]
+    poses = course.poses[:, count:]
     jams = []
-    for jam in made.audit.jams:
+    for jam in course.jams:
         robot = robots.index(jam.robot)
         x, y = _at(times, poses[:, robot], jam.begin)
         jams.append(Mark(robot, jam.begin, x, y, jam.end))
     return Trails(
         times=times,
-        things=made.world.poses[:, :count],
+        things=course.poses[:, :count],
         robots=poses,
         doers=tuple(names for names, _ in doing),
         acting=np.column_stack([acting for _, acting in doing]),
-        contacts=tuple(Mark(robots.index(t.robot), t.time, t.x, t.y) for t in made.touches),
+        contacts=tuple(Mark(robots.index(t.robot), t.time, t.x, t.y) for t in course.touches),
         jams=tuple(jams),
         outcomes=tuple(Outcome(one.text, HELD[one.outcome], _margin(one)) for one in requirements),
         said=tuple(
             tuple(
                 said_of(sensor, said)
-                for sensor, said in zip(robot.body.sensors, track.sensors, strict=True)
+                for sensor, said in zip(robot.body.sensors, sensors, strict=True)
                 if sensor.kind in EYES
             )
-            for robot, track in zip(made.scenario.robots, made.robots, strict=True)
+            for robot, sensors in zip(course.robots, course.sensors, strict=True)
         ),
     )
 

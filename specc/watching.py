@@ -1,7 +1,8 @@
 """A run that is looked at while it is computed: what `specc simulate --watch` shows."""
 
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import final
 
 import numpy as np
@@ -16,7 +17,7 @@ from specc.figures.eyes import Glimpse, glimpses
 from specc.figures.live import Show, live_view
 from specc.figures.live_lines import live_lines
 from specc.figures.live_window import live_window, open_window
-from specc.figures.scene import NOBODY, Scene
+from specc.figures.scene import NOBODY, Scene, Trails
 from specc.figures.style_names import Style
 from specc.pictured import drawn_sensors, said_now, scene_of, winner
 
@@ -100,36 +101,54 @@ def watching(
     robots = [(robot.name, robot.body, robot.start.pose) for robot in scenario.robots]
     things = lay_out(scenario.world, robots, scenario.seed).things
     onlooker = Onlooker(scenario, len(things))
-    with ExitStack() as stack:
-        scene = scene_of(scenario, things)
-        onlooker.shows_on(_shown(stack, scene, onlooker, scenario, console, speed, style))
+    screen = _Screen(console, speed, style, scenario.duration)
+    with screen.showing(scene_of(scenario, things), onlooker.doers, onlooker.glimpses) as show:
+        onlooker.shows_on(show)
         yield onlooker
 
 
-def _shown(
-    stack: ExitStack,
+def rewatch(
     scene: Scene,
-    onlooker: Onlooker,
-    scenario: Scenario,
+    trails: Trails,
     console: Console,
-    speed: float | None,
-    style: Style,
-) -> Show:
-    """Where the run is shown: the first of a window, a terminal, and lines that is there."""
-    window = _in_window(stack, scene, onlooker, speed, style)
-    if window is not None:
-        return window
-    doers = onlooker.doers
-    if console.is_interactive:
-        return stack.enter_context(live_view(scene, doers, console, speed=speed))
-    return stack.enter_context(live_lines(scene, doers, console, duration=scenario.duration))
+    *,
+    speed: float | None = 1.0,
+    style: Style = Style.SCREEN,
+) -> None:
+    """Show a recorded run as one that is computed is shown; Ctrl-C goes on as KeyboardInterrupt."""
+    eyes: list[list[Glimpse | None]] = [[None] * len(said) for said in trails.said]
+    screen = _Screen(console, speed, style, float(trails.times[-1] - trails.times[0]))
+    with screen.showing(scene, trails.doers, eyes) as show:
+        for row, now in enumerate(trails.times.tolist()):
+            for robot, said in enumerate(trails.said):
+                eyes[robot][:] = glimpses(said, now)
+            show(now, trails.things[row], trails.robots[row], trails.acting[row])
 
 
-def _in_window(
-    stack: ExitStack, scene: Scene, onlooker: Onlooker, speed: float | None, style: Style
-) -> Show | None:
-    window = open_window(scene.title)
-    if window is None:
-        return None
-    view = live_window(window, scene, onlooker.doers, onlooker.glimpses, speed=speed, style=style)
-    return stack.enter_context(view)
+@final
+@dataclass(frozen=True, slots=True)
+class _Screen:
+    """Where runs are shown: the first of a window, a terminal, and lines that is there."""
+
+    console: Console
+    speed: float | None
+    style: Style
+    duration: float
+
+    @contextmanager
+    def showing(
+        self,
+        scene: Scene,
+        doers: Sequence[Sequence[str]],
+        eyes: Sequence[Sequence[Glimpse | None]],
+    ) -> Iterator[Show]:
+        """What it yields shows a moment."""
+        window, console = open_window(scene.title), self.console
+        if window is not None:
+            view = live_window(window, scene, doers, eyes, speed=self.speed, style=self.style)
+        elif console.is_interactive:
+            view = live_view(scene, doers, console, speed=self.speed)
+        else:
+            view = live_lines(scene, doers, console, duration=self.duration)
+        with view as show:
+            yield show

@@ -14,6 +14,7 @@ from runtime.program import Unit
 from runtime.program_json import to_plain
 from runtime.recording.drawn import tell_drawn
 from runtime.recording.foxglove import classes
+from runtime.recording.happened import SUFFIX, Happened, to_bytes
 from runtime.recording.messages import Messages, nanoseconds
 from runtime.recording.nodes import CLOSE, MEASURED, THINGS, tell_robot
 from runtime.recording.tables import Field, tell_rows
@@ -44,13 +45,15 @@ def recorded_run(run: Run) -> bytes:
         for place, robot in enumerate(run.scenario.robots)
     ]
     document = (f"{run.scenario.name}.scenario.json", DOCUMENT, scenario_document(run.scenario))
+    happened = Happened(run.layout.things, run.touches, run.audit.jams)
+    told = (f"{run.scenario.name}{SUFFIX}", DOCUMENT, to_bytes(happened))
     about = {
         "scenario": run.scenario.name,
         "seed": str(run.scenario.seed),
         "duration": repr(run.duration),
         "state_hash": run.digest.hex(),
     }
-    return messages.written([document, *attachments], about)
+    return messages.written([document, told, *attachments], about)
 
 
 def scenario_document(scenario: Scenario) -> bytes:

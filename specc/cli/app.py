@@ -18,6 +18,7 @@ from specc.cli.console import print_annotations, print_json, say, show_diagnosti
 from specc.cli.fit import fit
 from specc.cli.init import init
 from specc.cli.portrait import portrait
+from specc.cli.replay import replay
 from specc.cli.schema import schema
 from specc.cli.simulate import simulate
 from specc.cli.status import Status
@@ -61,6 +62,7 @@ app.command("init")(init)
 app.command("check")(check)
 app.command("compile")(compile_)
 app.command("simulate")(simulate)
+app.command("replay")(replay)
 app.command("portrait")(portrait)
 app.command("wiring")(wiring)
 app.command("compare")(compare)

@@ -122,7 +122,7 @@ def _gif(film: Iterator[Image.Image], count: int, rate: float, palette: Palette)
     buffer = BytesIO()
     first.quantize(palette=table, dither=Image.Dither.NONE).save(
         buffer, format="GIF", save_all=True, append_images=coded,
-        duration=(10.0 * np.diff(ends)).astype(int).tolist(), loop=0, optimize=False, disposal=1,
+        duration=(10.0 * np.diff(ends)).astype(int).tolist(), loop=0, optimize=True, disposal=1,
     )  # fmt: skip
     return buffer.getvalue()
 

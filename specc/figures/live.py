@@ -15,9 +15,9 @@ from rich.text import Text
 
 from runtime.arrays import Array, Integers
 from specc.figures.braille import Canvas
-from specc.figures.pace import RATE, Pace
+from specc.figures.pace import Pace
 from specc.figures.quantities import number
-from specc.figures.scene import NOBODY, Scene, Trails
+from specc.figures.scene import NOBODY, Scene
 from specc.figures.world import bounds, outline, placed
 
 Show: TypeAlias = Callable[[float, Array, Array, Integers], None]
@@ -138,8 +138,7 @@ def live_view(
 
     doers: for each robot the names of what may act; they may become more on the way.
     speed: seconds of the run in one of a clock on the wall; None: as fast as it comes.
-    Where the console is no terminal, only the last moment is printed. The terminal is as before
-    afterwards, also after an exception such as Ctrl-C.
+    The terminal is as before afterwards, also after an exception such as Ctrl-C.
     """
     view = View(scene, doers, console)
     last: tuple[float, Array, Array, Integers] | None = None
@@ -159,31 +158,3 @@ def live_view(
         yield show
         if last is not None:
             live.update(view.at(*last), refresh=True)
-
-
-def watch(
-    scene: Scene,
-    trails: Trails,
-    console: Console,
-    *,
-    speed: float | None = 1.0,
-    clock: Callable[[], float] = time.monotonic,
-    sleep: Callable[[float], None] = time.sleep,
-) -> bool:
-    """Replay a run in the terminal; False where Ctrl-C ended it."""
-    per_second = RATE / (speed or 4.0)
-    count = int((trails.times[-1] - trails.times[0]) * per_second) + 1
-    wanted = np.append(trails.times[0] + np.arange(count) / per_second, trails.times[-1])
-    rows = np.unique(np.searchsorted(trails.times, wanted + 1e-9, side="right") - 1)
-    try:
-        with live_view(scene, trails.doers, console, speed=speed, clock=clock, sleep=sleep) as show:
-            for row in rows.tolist():
-                show(
-                    float(trails.times[row]),
-                    trails.things[row],
-                    trails.robots[row],
-                    trails.acting[row],
-                )
-    except KeyboardInterrupt:
-        return False
-    return True

@@ -8,6 +8,7 @@ import numpy as np
 from runtime.recording.tracks import Happening, RobotTrack
 from runtime.run import Run
 from runtime.world.audit import Jam
+from specc.replaying import Replay
 from specc.simulating import Simulation
 from verifier.report.layout import INDENT, section, table
 from verifier.report.requirement_record import requirements_record, requirements_text
@@ -34,6 +35,15 @@ def simulation_text(made: Simulation, took: float | None) -> str:
         blocks.append(section(robot.name, [table(rows, INDENT)]))
     blocks.append(section("audit", [table(list(_audit_rows(run)), INDENT)]))
     return "\n\n".join(blocks)
+
+
+def replay_text(found: Replay) -> str:
+    """What a recording says of what was required."""
+    scenario = found.scenario
+    head = f"{scenario.name}: {seconds(scenario.duration)} recorded, seed {scenario.seed}"
+    return "\n\n".join(
+        [head, *([requirements_text(found.requirements)] * bool(found.requirements))]
+    )
 
 
 def simulation_record(made: Simulation, took: float | None) -> dict[str, object]:

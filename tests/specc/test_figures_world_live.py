@@ -2,6 +2,7 @@
 
 import re
 from io import StringIO
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ from rich.console import Console
 
 from runtime.arrays import Array, Integers
 from specc.figures.braille import Canvas
-from specc.figures.live import View, live_view, watch
+from specc.figures.live import View, live_view
+from specc.figures.live_lines import live_lines
 from tests.specc.world_scenes import scene, trails
 
 BOX = (0.0, 0.0, 4.0, 2.0)
@@ -19,6 +21,14 @@ SHOW_CURSOR = "\x1b[?25h"
 def terminal(width: int = 80, height: int = 24) -> tuple[Console, StringIO]:
     out = StringIO()
     return Console(file=out, width=width, height=height, force_terminal=True), out
+
+
+def shown_on(console: Console, speed: float | None = None, **clock: Any) -> None:
+    """All of a run on a console."""
+    run = trails(12.0)
+    with live_view(scene(), run.doers, console, speed=speed, **clock) as show:
+        for row, now in enumerate(run.times.tolist()):
+            show(now, run.things[row], run.robots[row], run.acting[row])
 
 
 class Clock:
@@ -69,7 +79,7 @@ def test_it_tells_the_time_and_who_acts(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv("NO_COLOR", "1")
     console, out = terminal()
 
-    assert watch(scene(), trails(), console, speed=None)
+    shown_on(console)
 
     last = out.getvalue()
     assert "12.0 s" in last
@@ -81,7 +91,7 @@ def test_a_replay_takes_as_long_as_its_run() -> None:
     console, _ = terminal()
     clock = Clock()
 
-    watch(scene(), trails(12.0), console, speed=2.0, clock=clock, sleep=clock.sleep)
+    shown_on(console, speed=2.0, clock=clock, sleep=clock.sleep)
 
     assert clock.now == pytest.approx(106.0, abs=1e-6)
 
@@ -92,7 +102,8 @@ def test_ctrl_c_ends_it_and_gives_the_cursor_back() -> None:
     def interrupt(_seconds: float) -> None:
         raise KeyboardInterrupt
 
-    assert not watch(scene(), trails(), console, clock=Clock(), sleep=interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        shown_on(console, speed=1.0, clock=Clock(), sleep=interrupt)
     assert out.getvalue().endswith(SHOW_CURSOR)
 
 
@@ -117,17 +128,25 @@ def test_a_terminal_without_braille_gets_plain_letters() -> None:
     out = Latin()
     console = Console(file=out, width=80, height=24, force_terminal=True)
 
-    watch(scene(), trails(), console, speed=None)
+    shown_on(console)
 
     out.getvalue().encode("latin-1")
 
 
-def test_where_nobody_looks_only_the_end_is_printed() -> None:
+def test_a_pipe_gets_a_line_now_and_then_and_the_last_moment() -> None:
     out = StringIO()
+    run = trails(12.3)
 
-    watch(scene(), trails(), Console(file=out, width=80, height=24), speed=None)
+    with live_lines(scene(), run.doers, Console(file=out, width=200), duration=12.3) as show:
+        for row, now in enumerate(run.times.tolist()):
+            show(now, run.things[row], run.robots[row], run.acting[row])
 
-    assert out.getvalue().count("drive") == 1
+    lines = out.getvalue().splitlines()
+    assert [line.partition("  ")[0] for line in lines[:3]] == ["0 s", "0.5 s", "1 s"]
+    assert lines[0] == "0 s  r: x 0.3 m, y 1 m, heading 0°; nobody acts"
+    assert lines[-1].startswith("12.3 s  r: x 2.3 m, ")
+    assert lines[-1].endswith("; avoid acts")
+    assert "\x1b" not in out.getvalue()
 
 
 def moments(run_time: float) -> tuple[float, Array, Array, Integers]:

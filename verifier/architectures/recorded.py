@@ -76,7 +76,7 @@ def _topics(robot: str, architecture: Architecture, node: Node) -> dict[str, lis
 
 
 def _records(log: RunLog, robot: str, architecture: Architecture) -> list[NodeRecord]:
-    instants, acts, weights = _acting(log, robot, architecture)
+    instants, acts, weights = acting_in(log, robot, architecture)
     free = has_its_way(architecture, acts, weights)
     return [
         _record(log, robot, architecture, place, instants, acts[:, place], free[:, place])
@@ -131,7 +131,7 @@ def _sampled(
     return np.zeros(0) if times is None else times, columns
 
 
-def _acting(log: RunLog, robot: str, architecture: Architecture) -> tuple[Array, Booleans, Array]:
+def acting_in(log: RunLog, robot: str, architecture: Architecture) -> tuple[Array, Booleans, Array]:
     """When who acts changes, who acts (T, nodes) from then on, and the weights of choices."""
     told = []
     for node in architecture.nodes:
