@@ -208,7 +208,8 @@ def _refuse_unknown(
 def _there(name: str, quantities: dict[str, Quantity]) -> str:
     """What may be meant, and what there is of the same robot, or at all."""
     alike = [other for other in quantities if other.partition(".")[0] == name.partition(".")[0]]
-    known = sorted(alike or quantities)
+    last = name.rpartition(".")[2]
+    known = sorted(alike or quantities, key=lambda each: (not each.endswith(f".{last}"), each))
     more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
     there = f"there are: {', '.join(known[:MOST_NAMED])}{more}"
     return "\n".join(part for part in (did_you_mean(name, quantities), there) if part)

@@ -20,7 +20,9 @@ OVERRULED: Final = "it was overruled"
 BEYOND_DOMAIN: Final = "beyond its domain (clipped)"
 UNJUDGED: Final = "judge_when is false"
 """What a report on a log says of time in which a node had not its way."""
-OF_LOGS: Final = re.compile(r"`trace:|mend the log|under `trace|`delay:`|shorter `horizon`")
+OF_LOGS: Final = re.compile(
+    r"`trace:|mend the log|under `trace|`delay:`|shorter `horizon`|`judge_when`"
+)
 FITTING: Final = re.compile(r" \(`specc fit [^`]*` edits it\)")
 
 

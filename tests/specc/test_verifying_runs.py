@@ -1,0 +1,282 @@
+"""The recording of a scenario judged: requirements and nodes, by what it carries or by --spec."""
+
+import json
+import shutil
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import specc
+from runtime.recording.scenario_run import recorded_run
+from runtime.run import Run
+from spec_schema.diagnostics import SpecError
+from specc.cli import main
+from specc.loading import compile_scenario_spec
+from specc.runs import verify_together
+from specc.simulating import Simulation, simulate_scenario
+from verifier.report.report import Verdict
+
+SPECS = Path(__file__).parents[2] / "specs"
+SCENARIO = SPECS / "scenarios" / "first_light.yaml"
+LAYERS = SPECS / "scenarios" / "light_subsumption.yaml"
+DURATION = 14.0
+
+
+def simulated(
+    scenario: Path, requirements: tuple[str, ...] = (), duration: float = DURATION
+) -> Simulation:
+    """The beginning of a run: the robot turns to the lamp and gets there."""
+    text = scenario.read_text()
+    if requirements:
+        listed = "\n".join(f"  - {each}" for each in requirements)
+        text = text[: text.index("require:")] + f"require:\n{listed}\n"
+    other = scenario.with_name("other.yaml")
+    other.write_text(text)
+    compiled = compile_scenario_spec(other).scenario
+    other.unlink()
+    return simulate_scenario(replace(compiled, duration=duration))
+
+
+def kept(run: Run, path: Path) -> Path:
+    """The run, recorded."""
+    path.write_bytes(recorded_run(run))
+    return path
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of all specs, to be changed."""
+    folder = tmp_path_factory.mktemp("library") / "specs"
+    ignored = shutil.ignore_patterns("recordings", "*.md")
+    shutil.copytree(SPECS, folder, ignore=ignored)
+    return folder
+
+
+REQUIRED = (
+    "always r.clearance > 5 mm",
+    "eventually within 10 s r.lamp.light > 8 lx",
+    "always (r.x > 0 m and crate.y > 0 m)",
+    "always abs(r.heading) < 229 deg",
+    "always r.seek.turn < 2 rad/s",
+    "eventually r.choose.choice == 'go'",
+    "r.contacts < 1 until r.speed > 0.05 m/s",
+)
+
+
+@pytest.fixture(scope="module")
+def made(library: Path) -> Simulation:
+    """A faithful run, with requirements of every sort of quantity."""
+    return simulated(library / "scenarios" / "first_light.yaml", REQUIRED)
+
+
+@pytest.fixture(scope="module")
+def recording(made: Simulation, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its recording."""
+    return kept(made.run, tmp_path_factory.mktemp("recordings") / "run.mcap")
+
+
+@pytest.fixture(scope="module")
+def sabotaged(library: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A faithful robot, and one that turns to the light half as eagerly as its spec says."""
+    folder = tmp_path_factory.mktemp("sabotaged")
+    behavior = library / "phototaxis.yaml"
+    own = behavior.read_text()
+    weak = own.replace("is: gain * sin", "is: 0.5 * gain * sin")
+    assert weak != own
+    scenario = library / "scenarios" / LAYERS.name
+    faithful = kept(simulated(scenario, duration=50.0).run, folder / "faithful.mcap")
+    behavior.write_text(weak)
+    run = simulated(scenario, duration=50.0).run
+    behavior.write_text(own)
+    return faithful, kept(run, folder / "weak.mcap")
+
+
+def test_a_recording_says_of_requirements_what_the_run_itself_says_to_the_last_bit(
+    made: Simulation, recording: Path
+) -> None:
+    found = specc.verify_run(recording, only_verdict=True).requirements
+
+    assert found is not None
+    assert found.examination.requirements == made.requirements
+    assert len(made.requirements) == len(REQUIRED)
+
+
+def test_exactly_the_node_that_was_sabotaged_fails(sabotaged: tuple[Path, Path]) -> None:
+    faithful, weak = (specc.verify_run(path, LAYERS, only_verdict=True) for path in sabotaged)
+
+    assert [each.part for each in weak.nodes] == ["r.avoid", "r.seek", "r.wander", "r.choose"]
+    failed = {each.part for each in weak.nodes if each.report.verdict is Verdict.FAIL}
+    assert failed == {"r.seek"}
+    assert weak.verdict is Verdict.FAIL
+    assert faithful.node("r.seek").report.verdict is Verdict.PASS
+    assert all(each.report.verdict is not Verdict.FAIL for each in faithful.nodes)
+
+
+def test_a_behavior_that_never_acted_is_open_and_says_why(recording: Path) -> None:
+    avoid = specc.verify_run(recording, only_verdict=True).node("r.avoid").report
+
+    assert avoid.verdict is Verdict.INCONCLUSIVE
+    assert avoid.reasons == ("it never acted in 13.9 s",)
+    assert avoid.exclusions[0].cause == "it was inhibited"
+
+
+@pytest.mark.parametrize(
+    ("spec", "nodes", "requires"),
+    [
+        ("scenarios/first_light.yaml", ["r.avoid", "r.seek", "r.choose"], True),
+        ("architectures/find_light.yaml", ["r.avoid", "r.seek", "r.choose"], False),
+        ("seek_light.yaml", ["r.seek"], False),
+        ("arbiters/safe_first.yaml", ["r.choose"], False),
+    ],
+)
+def test_a_spec_that_is_named_judges_what_it_is_about(
+    recording: Path,
+    spec: str,
+    nodes: list[str],
+    requires: bool,  # noqa: FBT001  of a table
+) -> None:
+    found = specc.verify_run(recording, SPECS / spec, only_verdict=True)
+
+    assert [each.part for each in found.nodes] == nodes
+    assert (found.requirements is not None) == requires
+
+
+def test_a_compiled_architecture_judges_as_the_attached_one(
+    recording: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "find_light.specc"
+    assert main(["compile", str(SPECS / "architectures/find_light.yaml"), "-o", str(path)]) == 0
+
+    found = specc.verify_run(recording, path, only_verdict=True)
+
+    assert [each.report.verdict for each in found.nodes] == [
+        each.report.verdict for each in specc.verify_run(recording, only_verdict=True).nodes
+    ]
+
+
+def test_a_scenario_about_another_robot_is_refused_with_those_that_there_are(
+    recording: Path, library: Path
+) -> None:
+    scenario = library / "scenarios" / "renamed.yaml"
+    text = SCENARIO.read_text().replace("  r:", "  q:")
+    scenario.write_text(text.replace(" r.", " q.").replace("(if r.", "(if q."))
+
+    with pytest.raises(SpecError) as error:
+        specc.verify_run(recording, scenario)
+    (told,) = error.value.diagnostics
+    assert told.code == "V392"
+    assert "robot 'q', which is not in this recording" in told.message
+    assert told.help == "robots in it: r"
+
+
+def test_a_requirement_about_what_was_not_recorded_is_told_with_what_was(
+    recording: Path, library: Path
+) -> None:
+    body = library / "bodies" / "courier.yaml"
+    own = body.read_text()
+    body.write_text(own.replace("  lamp:", "  eye: {senses: light}\n  lamp:"))
+    scenario = library / "scenarios" / "eye.yaml"
+    scenario.write_text(SCENARIO.read_text().replace("r.lamp.light", "r.eye.light"))
+
+    try:
+        with pytest.raises(SpecError) as error:
+            specc.verify_run(recording, scenario)
+    finally:
+        body.write_text(own)
+    (told,) = error.value.diagnostics
+    assert told.code == "V394"
+    assert "'r.eye.light', which is not in this recording" in told.message
+    assert "r.lamp.light" in (told.help or "")
+
+
+def test_a_behavior_that_no_node_runs_is_refused_with_those_that_run(recording: Path) -> None:
+    with pytest.raises(SpecError) as error:
+        specc.verify_run(recording, SPECS / "patrol.yaml")
+
+    assert error.value.diagnostics[0].code == "V392"
+    assert "back_off, safe_first, seek_light" in (error.value.diagnostics[0].help or "")
+
+
+def test_verify_sends_the_recording_of_a_scenario_to_verify_run(recording: Path) -> None:
+    with pytest.raises(SpecError) as error:
+        specc.verify(recording)
+    assert error.value.diagnostics[0].code == "V393"
+    assert error.value.diagnostics[0].help == "use specc.verify_run"
+
+    husky = SPECS / "recordings" / "husky" / "husky.mcap"
+    with pytest.raises(SpecError) as other:
+        specc.verify_run(husky)
+    assert other.value.diagnostics[0].code == "V393"
+
+
+def test_every_form_of_report_has_requirements_and_nodes(
+    sabotaged: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    weak = sabotaged[1]
+    outputs = [tmp_path / f"r.{kind}" for kind in ("html", "json", "txt", "junit.xml", "sarif")]
+    options = [part for path in outputs for part in ("-o", str(path))]
+    status = main(["verify", str(weak), "--spec", str(LAYERS), "--quick", *options])
+
+    assert status == 1
+    printed = capsys.readouterr().out
+    assert printed.splitlines()[-1].startswith("FAIL  1 recording, 1 list of requirements and 4")
+    for path in outputs:
+        text = path.read_text()
+        assert "r.seek" in text, path
+        assert "r.clearance" in text or path.suffix == ".sarif", path  # what holds is silent there
+    record = json.loads(outputs[1].read_text())
+    assert [each["part"] for each in record["runs"]] == [
+        "requirements",
+        "r.avoid",
+        "r.seek",
+        "r.wander",
+        "r.choose",
+    ]
+    assert record["runs"][0]["requirements"][0]["outcome"] == "satisfied"
+    suites = ET.fromstring(outputs[3].read_text())  # noqa: S314  our own
+    failing = {suite.attrib["name"]: suite.attrib["failures"] for suite in suites}
+    assert failing[f"{weak}: r.seek"] != "0"
+    assert sum(int(count) for name, count in failing.items() if "r.seek" not in name) == 0
+    rules = {each["ruleId"] for each in json.loads(outputs[4].read_text())["runs"][0]["results"]}
+    assert "tolerance-exceeded" in rules
+
+
+def test_no_advice_on_a_recorded_node_speaks_of_logs(sabotaged: tuple[Path, Path]) -> None:
+    (seek,) = specc.verify_run(sabotaged[1], SPECS / "phototaxis.yaml").nodes
+
+    told = " ".join((*seek.report.advice, *seek.report.reasons))
+    assert seek.examination.diagnosis is not None
+    assert "specc fit" not in told
+    assert "`trace:`" not in told
+    assert "judge_when" not in told
+
+
+def test_the_nodes_of_several_runs_are_judged_together(recording: Path, tmp_path: Path) -> None:
+    scenario = compile_scenario_spec(SCENARIO).scenario
+    other = simulate_scenario(replace(scenario, duration=12.0, seed=5))
+    both = [recording, kept(other.run, tmp_path / "second.mcap")]
+
+    runs = verify_together(both, only_verdict=True)
+
+    pooled = {pool.members[0].part: pool.report.verdict for pool in runs.pools}
+    assert pooled["r.seek"] is Verdict.PASS
+    windows = [pool.report.starts.size for pool in runs.pools if pool.members[0].part == "r.seek"]
+    alone = [specc.verify_run(each, only_verdict=True).node("r.seek") for each in both]
+    assert windows == [sum(each.report.starts.size for each in alone)]
+
+
+def test_a_torn_recording_tells_its_losses_at_every_node(recording: Path, tmp_path: Path) -> None:
+    torn = tmp_path / "torn.mcap"
+    data = bytearray(recording.read_bytes())
+    middle = data.index(b"/r/seek/state") + 100_000
+    data[middle : middle + 400] = bytes(400)
+    torn.write_bytes(data)
+
+    found = specc.verify_run(torn, only_verdict=True)
+    assert all(each.report.losses for each in found.nodes)
+
+    with pytest.raises(SpecError) as error:
+        specc.verify_run(torn, strict=True)
+    assert error.value.diagnostics[0].code == "V313"
