@@ -22,7 +22,7 @@ from specc.wired import ACTS, Box, Eye, Mouth, Port, Sort, Wired
 EDGE: Final = 0.15
 HEAD: Final = 0.62
 FOOT: Final = 0.45
-SIDE: Final = 0.3
+SIDE: Final = 0.42
 RIM: Final = 0.03
 """Inches that edges may stick out."""
 STUB: Final = 0.13
@@ -84,15 +84,24 @@ def _floors(axes: Axes, plan: Plan, wired: Wired, palette: Palette) -> None:
             Rectangle((frame.x, frame.y), frame.width, frame.height, color=tint, zorder=0, lw=0)
         )
         name = "base behaviors" if level == 0 else f"modules, level {level}"
-        _upright(axes, plan.width, frame.y + 0.5 * frame.height, name, palette)
+        text = f"{name}\n{_counted(wired, level)}"
+        _upright(axes, plan.width, frame.y + 0.5 * frame.height, text, palette)
     if plan.mouths:
         high = next(iter(plan.mouths.values())).height
         _upright(axes, plan.width, 0.5 * high, f"body {wired.body}", palette)
 
 
+def _counted(wired: Wired, level: int) -> str:
+    """How many controls a level offers: each further level should have fewer (thesis, 3.2.3)."""
+    boxes = (box for box in wired.boxes if box.level == level)
+    count = sum(port.name != ACTS for box in boxes for port in box.controls)
+    return "1 control" if count == 1 else f"{count or 'no'} controls"
+
+
 def _upright(axes: Axes, x: float, y: float, text: str, palette: Palette) -> None:
     axes.text(
         x + 0.06, y, text, rotation=90, ha="left", va="center", fontsize=SMALL + 0.5,
+        multialignment="center", linespacing=1.4,
         color=palette.faint, clip_on=False,
     )  # fmt: skip
 

@@ -7,35 +7,28 @@ upwards.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final, final
+from typing import Final
 
 import networkx as nx
 
+from specc.figures.wiring_heights import Columns, raised
 from specc.figures.wiring_plan import (
     BETWEEN,
     COLUMN,
     EYE,
-    ROW,
-    Frame,
-    Place,
+    End,
     Plan,
-    Run,
-    Trunk,
-    box_height,
     box_width,
     claim_slot,
     mouth_width,
     slot,
+    span_of,
 )
-from specc.wired import Box, Net, Sort, Wired
+from specc.wired import Box, Sort, Wired
 
 NAMES: Final = 1.15
 """Left of the floors, for the names of readings."""
 SWEEPS: Final = 6
-LANE: Final = 0.13
-MARGIN: Final = 0.24
-"""Between a floor and its nearest lane."""
 TRUNK: Final = 0.11
 
 
@@ -63,7 +56,8 @@ def plan_of(wired: Wired) -> Plan:
     ends = _ends(wired, xs)
     trunk_x = _trunks(wired, ends, left, left + inner + 0.15)
     lanes, counts = _lanes(wired, ends, trunk_x, xs, len(floors) + 1)
-    return _raised(wired, floors, spots, xs, ends, trunk_x, lanes, counts, (left, inner))
+    columns = Columns(floors, spots, xs, ends, trunk_x, lanes, counts, (left, inner))
+    return raised(wired, columns)
 
 
 def _row_width(widths: Sequence[float]) -> float:
@@ -126,25 +120,15 @@ def _ports(
     return found
 
 
-@final
-@dataclass(frozen=True, slots=True)
-class _End:
-    """Where a net ends: the gap, the port, and whether an arrow stands there."""
-
-    gap: int
-    port: tuple[str, str, str]
-    is_target: bool
-
-
-def _ends(wired: Wired, xs: Mapping[tuple[str, str, str], float]) -> list[list[_End]]:
+def _ends(wired: Wired, xs: Mapping[tuple[str, str, str], float]) -> list[list[End]]:
     """For each net where it ends; the sensor of a reading is not among these."""
     level = {box.name: box.level for box in wired.boxes}
 
-    def end(box: str, name: str, *, target: bool, to_mouth: bool) -> _End:
+    def end(box: str, name: str, *, target: bool, to_mouth: bool) -> End:
         if to_mouth:
-            return _End(0, (box, "above", name), target)
+            return End(0, (box, "above", name), target)
         above = (box, "above", name) in xs and not (not target and (box, "below", name) in xs)
-        return _End(level[box] + above, (box, "above" if above else "below", name), target)
+        return End(level[box] + above, (box, "above" if above else "below", name), target)
 
     found = []
     for net in wired.nets:
@@ -158,7 +142,7 @@ def _ends(wired: Wired, xs: Mapping[tuple[str, str, str], float]) -> list[list[_
 
 
 def _trunks(
-    wired: Wired, ends: Sequence[Sequence[_End]], left: float, right: float
+    wired: Wired, ends: Sequence[Sequence[End]], left: float, right: float
 ) -> dict[int, float]:
     """The x of the trunk of each net that has one: readings left, others right."""
     found: dict[int, float] = {}
@@ -175,7 +159,7 @@ def _trunks(
 
 def _lanes(
     wired: Wired,
-    ends: Sequence[Sequence[_End]],
+    ends: Sequence[Sequence[End]],
     trunk_x: Mapping[int, float],
     xs: Mapping[tuple[str, str, str], float],
     gaps: int,
@@ -189,7 +173,7 @@ def _lanes(
     for gap in range(gaps):
         for sorts in ({Sort.COMMAND, Sort.CHOICE}, {Sort.OUTPUT}, {Sort.READING}):
             spans = {
-                index: _span(index, gap, ends, trunk_x, xs)
+                index: span_of(index, gap, ends, trunk_x, xs)
                 for index, net in enumerate(wired.nets)
                 if net.sort in sorts and any(end.gap == gap for end in ends[index])
             }
@@ -199,19 +183,6 @@ def _lanes(
                 lanes[index, gap] = counts[gap] + colors[index]
             counts[gap] += max(colors.values(), default=-1) + 1
     return lanes, counts
-
-
-def _span(
-    index: int,
-    gap: int,
-    ends: Sequence[Sequence[_End]],
-    trunk_x: Mapping[int, float],
-    xs: Mapping[tuple[str, str, str], float],
-) -> tuple[float, float]:
-    """From where to where a net's lane goes in a gap."""
-    points = [xs[end.port] for end in ends[index] if end.gap == gap]
-    points += [trunk_x[index]] if index in trunk_x else []
-    return min(points), max(points)
 
 
 def _beside(spans: Mapping[int, tuple[float, float]]) -> nx.Graph:
@@ -225,90 +196,3 @@ def _beside(spans: Mapping[int, tuple[float, float]]) -> nx.Graph:
         if a < b and spans[a][0] < spans[b][1] + 0.1 and spans[b][0] < spans[a][1] + 0.1
     )
     return graph
-
-
-def _raised(
-    wired: Wired,
-    floors: Sequence[Sequence[Box]],
-    spots: Mapping[str, Place],
-    xs: Mapping[tuple[str, str, str], float],
-    ends: Sequence[Sequence[_End]],
-    trunk_x: Mapping[int, float],
-    lanes: Mapping[tuple[int, int], int],
-    counts: Sequence[int],
-    inside: Place,
-) -> Plan:
-    """From columns and lanes to heights, from below."""
-    y = ROW * 5 + 0.16
-    mouth = {
-        one.name: Frame(spots[f"/{one.name}"][0], 0.0, spots[f"/{one.name}"][1], y)
-        for one in wired.mouths
-    }
-    boxes: dict[str, Frame] = {}
-    bands: list[Frame] = []
-    starts = []
-    top_of: dict[str, float] = {}
-    for gap, count in enumerate(counts):
-        starts.append(y + MARGIN)
-        y += 2 * MARGIN + LANE * max(count - 1, 0)
-        if gap < len(floors):
-            height = max(box_height(box) for box in floors[gap])
-            for box in floors[gap]:
-                boxes[box.name] = Frame(spots[box.name][0], y, spots[box.name][1], height)
-            bands.append(Frame(inside[0] - 0.12, y - 0.1, inside[1] + 0.24, height + 0.2))
-            top_of |= {box.name: y + height for box in floors[gap]}
-            y += height
-    tops = {name: frame.height for name, frame in mouth.items()} | top_of
-    ports = {
-        (box, side, name): (x, tops[box] if side == "above" else boxes[box].y)
-        for (box, side, name), x in xs.items()
-    }
-    eyes = _eyes(wired, y)
-    runs, trunks = [], []
-    for index, net in enumerate(wired.nets):
-        own = [(gap, starts[gap] + LANE * lane) for (i, gap), lane in lanes.items() if i == index]
-        for gap, height in own:
-            here = [end for end in ends[index] if end.gap == gap]
-            left, right = _span(index, gap, ends, trunk_x, xs)
-            runs.append(
-                Run(
-                    index,
-                    height,
-                    left,
-                    right,
-                    tuple(ports[end.port] for end in here),
-                    tuple(ports[end.port] for end in here if end.is_target),
-                )
-            )
-        if index in trunk_x:
-            heights = [height for _, height in own]
-            start = None
-            if net.sort is Sort.READING:
-                start = _exit(wired, eyes, net)
-                heights.append(start[1])
-            trunks.append(Trunk(index, trunk_x[index], min(heights), max(heights), start))
-    width = max([inside[0] + inside[1] + 0.2, *(x + 0.1 for x in trunk_x.values())])
-    return Plan(width, y, boxes, mouth, eyes, tuple(bands), ports, tuple(runs), tuple(trunks))
-
-
-def _eyes(wired: Wired, height: float) -> dict[str, Frame]:
-    """Sensors at the left, in the middle of the height."""
-    seen = [eye for eye in wired.eyes if eye.readings]
-    sizes = [ROW * (3 + max(len(eye.readings) - 1, 0)) + 0.16 for eye in seen]
-    gap = 0.15
-    total = sum(sizes) + gap * max(len(seen) - 1, 0)
-    y = max(0.5 * (height + total), total)
-    found = {}
-    for eye, size in zip(seen, sizes, strict=True):
-        found[eye.name] = Frame(0.0, y - size, EYE, size)
-        y -= size + gap
-    return found
-
-
-def _exit(wired: Wired, eyes: Mapping[str, Frame], net: Net) -> Place:
-    """Where a reading leaves its sensor."""
-    frame = eyes[net.source[0]]
-    eye = next(eye for eye in wired.eyes if eye.name == net.source[0])
-    row = eye.readings.index(net.source[1])
-    share = (row + 0.5) / len(eye.readings)
-    return frame.x + frame.width, frame.y + frame.height * (1.0 - share)

@@ -1,6 +1,6 @@
 """The parts of a wiring's layout, and how large boxes are; all in inches, y upwards."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias, final
 
@@ -104,3 +104,26 @@ def mouth_width(mouth: Mouth) -> float:
 def box_height(box: Box) -> float:
     """Of a node's box: two lines of ports above and below, three in the middle, and notes."""
     return ROW * (7 + len(box.notes)) + 0.24
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class End:
+    """Where a net ends: the gap, the port, and whether an arrow stands there."""
+
+    gap: int
+    port: tuple[str, str, str]
+    is_target: bool
+
+
+def span_of(
+    index: int,
+    gap: int,
+    ends: Sequence[Sequence[End]],
+    trunk_x: Mapping[int, float],
+    xs: Mapping[tuple[str, str, str], float],
+) -> tuple[float, float]:
+    """From where to where a net's lane goes in a gap."""
+    points = [xs[end.port] for end in ends[index] if end.gap == gap]
+    points += [trunk_x[index]] if index in trunk_x else []
+    return min(points), max(points)

@@ -1,0 +1,154 @@
+"""The heights of a wiring: floors above one another, with gaps for lanes between."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+from specc.figures.wiring_plan import (
+    EYE,
+    ROW,
+    End,
+    Frame,
+    Place,
+    Plan,
+    Run,
+    Trunk,
+    box_height,
+    span_of,
+)
+from specc.wired import Box, Net, Sort, Wired
+
+LANE: Final = 0.13
+MARGIN: Final = 0.24
+"""Between a floor and its nearest lane."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Columns:
+    """Everything but heights.
+
+    floors: boxes from below. spots: x and width of each box, and of each channel as `/name`.
+    lanes: of (net, gap). counts: lanes of each gap. inside: x and width of the floors.
+    """
+
+    floors: Sequence[Sequence[Box]]
+    spots: Mapping[str, Place]
+    xs: Mapping[tuple[str, str, str], float]
+    ends: Sequence[Sequence[End]]
+    trunk_x: Mapping[int, float]
+    lanes: Mapping[tuple[int, int], int]
+    counts: Sequence[int]
+    inside: Place
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Storeys:
+    """Heights: of channels, boxes and the grounds of floors, where lanes begin, and of all."""
+
+    mouths: Mapping[str, Frame]
+    boxes: Mapping[str, Frame]
+    bands: tuple[Frame, ...]
+    starts: tuple[float, ...]
+    height: float
+
+
+def raised(wired: Wired, columns: Columns) -> Plan:
+    """From columns and lanes to heights, from below."""
+    storeys = _storeys(wired, columns)
+    ports = _standing(columns, storeys)
+    eyes = _eyes(wired, storeys.height)
+    runs = tuple(
+        run for net in range(len(wired.nets)) for run in _runs(net, columns, storeys, ports)
+    )
+    trunks = tuple(
+        _trunk(net, columns, runs, _exit(wired, eyes, wired.nets[net])) for net in columns.trunk_x
+    )
+    left, inner = columns.inside
+    width = max([left + inner + 0.2, *(x + 0.1 for x in columns.trunk_x.values())])
+    return Plan(
+        width, storeys.height, storeys.boxes, storeys.mouths, eyes, storeys.bands, ports, runs,
+        trunks,
+    )  # fmt: skip
+
+
+def _storeys(wired: Wired, columns: Columns) -> _Storeys:
+    """Channels at the bottom, then gaps and floors by turns."""
+    y = ROW * 5 + 0.16
+    left, inner = columns.inside
+    spots, boxes = columns.spots, dict[str, Frame]()
+    mouths = {m.name: Frame(spots[f"/{m.name}"][0], 0.0, spots[f"/{m.name}"][1], y)
+              for m in wired.mouths}  # fmt: skip
+    bands, starts = [], []
+    for gap, count in enumerate(columns.counts):
+        starts.append(y + MARGIN)
+        is_top = gap == len(columns.floors)
+        y += MARGIN * (1 if is_top and not count else 2) + LANE * max(count - 1, 0)
+        if is_top:
+            break
+        height = max(box_height(box) for box in columns.floors[gap])
+        for box in columns.floors[gap]:
+            boxes[box.name] = Frame(spots[box.name][0], y, spots[box.name][1], height)
+        bands.append(Frame(left - 0.12, y - 0.1, inner + 0.24, height + 0.2))
+        y += height
+    return _Storeys(mouths, boxes, tuple(bands), tuple(starts), y)
+
+
+def _standing(columns: Columns, storeys: _Storeys) -> dict[tuple[str, str, str], Place]:
+    """Where each port stands: on the upper or the lower edge of its box."""
+    frames = {**storeys.mouths, **storeys.boxes}
+    return {
+        (box, side, name): (x, frames[box].y + frames[box].height * (side == "above"))
+        for (box, side, name), x in columns.xs.items()
+    }
+
+
+def _runs(
+    net: int,
+    columns: Columns,
+    storeys: _Storeys,
+    ports: Mapping[tuple[str, str, str], Place],
+) -> Iterator[Run]:
+    """The lanes of a net, one in each gap where it ends."""
+    for (index, gap), lane in columns.lanes.items():
+        if index != net:
+            continue
+        here = [end for end in columns.ends[net] if end.gap == gap]
+        left, right = span_of(net, gap, columns.ends, columns.trunk_x, columns.xs)
+        joins = tuple(ports[end.port] for end in here)
+        arrows = tuple(ports[end.port] for end in here if end.is_target)
+        yield Run(net, storeys.starts[gap] + LANE * lane, left, right, joins, arrows)
+
+
+def _trunk(index: int, columns: Columns, runs: Sequence[Run], start: Place | None) -> Trunk:
+    """The upright that joins the lanes of a net; start: where it leaves a sensor."""
+    heights = [run.y for run in runs if run.net == index]
+    if start is not None:
+        heights.append(start[1])
+    return Trunk(index, columns.trunk_x[index], min(heights), max(heights), start)
+
+
+def _eyes(wired: Wired, height: float) -> dict[str, Frame]:
+    """Sensors at the left, in the middle of the height."""
+    seen = [eye for eye in wired.eyes if eye.readings]
+    sizes = [ROW * (3 + max(len(eye.readings) - 1, 0)) + 0.16 for eye in seen]
+    gap = 0.15
+    total = sum(sizes) + gap * max(len(seen) - 1, 0)
+    y = max(0.5 * (height + total), total)
+    found = {}
+    for eye, size in zip(seen, sizes, strict=True):
+        found[eye.name] = Frame(0.0, y - size, EYE, size)
+        y -= size + gap
+    return found
+
+
+def _exit(wired: Wired, eyes: Mapping[str, Frame], net: Net) -> Place | None:
+    """Where a reading leaves its sensor; None of what is no reading."""
+    if net.sort is not Sort.READING:
+        return None
+    frame = eyes[net.source[0]]
+    eye = next(eye for eye in wired.eyes if eye.name == net.source[0])
+    row = eye.readings.index(net.source[1])
+    share = (row + 0.5) / len(eye.readings)
+    return frame.x + frame.width, frame.y + frame.height * (1.0 - share)
