@@ -6,12 +6,14 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TypeAlias, final
 
+from runtime.arbiter import Arbiter
 from runtime.program import Program
 from spec_schema.diagnostics import SpecError
 from specc.run_standard import carried_by, is_of_runs
 from specc.verifying import Clock, Verification, program_for_verify, verify_by
 from specc.verifying_architecture import NotJudged
 from specc.verifying_recording import REQUIREMENTS, verify_carried
+from verifier.arbitration.together import pooled_decisions
 from verifier.fidelity.together import pooled
 from verifier.report.examination import Examination
 from verifier.report.report import WORST_FIRST, Report, Verdict
@@ -197,8 +199,8 @@ def runs_of(outcomes: Sequence[Outcome], *, is_whole: bool = True) -> Runs:
     """The outcomes, with a common verdict on those of each spec."""
     by_spec: dict[tuple[str, str, str], list[Verification]] = {}
     for each in verifications(outcomes):
-        if each.judgement is None:
-            continue  # decisions of several logs are not put together
+        if isinstance(each.found.program, tuple):
+            continue  # what is required holds in each run, or does not
         spec = each.report.spec
         by_spec.setdefault((spec.name, spec.sha256, each.part), []).append(each)
     pools = tuple(_pool(members) for members in by_spec.values() if len(members) > 1)
@@ -206,13 +208,21 @@ def runs_of(outcomes: Sequence[Outcome], *, is_whole: bool = True) -> Runs:
 
 
 def _pool(members: Sequence[Verification]) -> Pool:
-    program = members[0].found.program
-    assert isinstance(program, Program), "what has a judgement was judged by a program"
-    report = pooled(program, [each.judgement for each in members if each.judgement])
+    examination = _together(members)
     if part := members[0].part:
-        source = f"{report.trace.source}: {part}"
-        report = replace(report, trace=replace(report.trace, source=source))
-    return Pool(tuple(members), Examination(report, origins=members[0].examination.origins))
+        report = examination.report
+        trace = replace(report.trace, source=f"{report.trace.source}: {part}")
+        examination = replace(examination, report=replace(report, trace=trace))
+    return Pool(tuple(members), examination)
+
+
+def _together(members: Sequence[Verification]) -> Examination:
+    program = members[0].found.program
+    if isinstance(program, Arbiter):
+        return pooled_decisions([each.examination for each in members])
+    assert isinstance(program, Program), "requirements are not judged together"
+    report = pooled(program, [each.judgement for each in members if each.judgement])
+    return Examination(report, origins=members[0].examination.origins)
 
 
 def counted(outcomes: Sequence[Outcome]) -> str:

@@ -15,7 +15,7 @@ from verifier.arbitration.explaining import explained_by, strays_of, thresholds_
 from verifier.arbitration.planted import slowness_at_limit
 from verifier.arbitration.refitting import Scales, later
 from verifier.arbitration.regions import boxes, cells, standing_of
-from verifier.arbitration.saying import reasons_of, sentences_of
+from verifier.arbitration.saying import CONFIDENCE, reasons_of, sentences_of
 from verifier.arbitration.shares import share_of, slowness_of_choices
 from verifier.report.arbitration import (
     Arbitration,
@@ -29,7 +29,6 @@ from verifier.report.report import (
 )
 from verifier.traces.trace import Trace
 
-CONFIDENCE: Final = 0.95
 VERDICTS: Final = {
     Standing.WITHIN: Verdict.PASS,
     Standing.EXCEEDED: Verdict.FAIL,

@@ -5,10 +5,12 @@ from typing import Final
 
 import numpy as np
 
+from verifier.arbitration.shares import times_longer
 from verifier.report.arbitration import Arbitration, Region, Share, Threshold, ThresholdStanding
 from verifier.report.report import Standing, Verdict
 from verifier.report.wording import exact, listed, number, percent, quantity, seconds, span
 
+CONFIDENCE: Final = 0.95
 FEWEST_SHOWN: Final = 0.05
 """Of the decisions that differ: a confusion rarer than this is not told first."""
 
@@ -23,9 +25,21 @@ def reasons_of(section: Arbitration, verdict: Verdict) -> tuple[tuple[str, ...],
         case Verdict.PASS:
             return (told,), ()
         case Verdict.INCONCLUSIVE:
-            return (told,), ("record more changes of choice: decisions that go on tell little",)
+            return (told,), (_longer(section),)
         case Verdict.FAIL:
             return (told, *_mainly(section)), _advice(section)
+
+
+def _longer(section: Arbitration) -> str:
+    """How much of such a log would decide."""
+    factor = times_longer(section.share, section.required, CONFIDENCE)
+    if math.isinf(factor):
+        return "record more changes of choice: decisions that go on tell little"
+    wanted = math.ceil(factor * section.share.decisions)
+    lasts = seconds(wanted * section.period)
+    return (
+        f"about {wanted} decisions like these ({lasts}) would decide: those that go on tell little"
+    )
 
 
 def sentences_of(section: Arbitration) -> tuple[str, ...]:
@@ -61,7 +75,8 @@ def region_phrase(region: Region) -> str:
 
 def _of(share: Share) -> str:
     ends = f"{_percents(share.interval.low)} to {_percents(share.interval.high)}"
-    return f"{_percents(share.value)} of {share.decisions} decisions (95 % interval {ends})"
+    decisions = "1 decision" if share.decisions == 1 else f"{share.decisions} decisions"
+    return f"{_percents(share.value)} of {decisions} (95 % interval {ends})"
 
 
 def _percents(share: float) -> str:

@@ -19,6 +19,8 @@ from verifier.report.report import Interval
 
 FEW: Final = 10
 """With fewer episodes of disagreement their own autocorrelation says nothing."""
+MOST_LONGER: Final = 50.0
+"""Nobody records so many times as much."""
 
 
 def share_of(agrees: Booleans, slowness: float, confidence: float) -> Share:
@@ -34,7 +36,7 @@ def share_of(agrees: Booleans, slowness: float, confidence: float) -> Share:
     own = slowness_of((~agrees).astype(float))
     time = own if _episodes(~agrees) >= FEW else max(own, slowness)
     effective = max(1.0, count / max(time, 1.0))
-    return Share(agreeing, count, effective, _interval(agreeing / count, effective, confidence))
+    return Share(agreeing, count, effective, interval_of(agreeing / count, effective, confidence))
 
 
 def slowness_of(values: Array) -> float:
@@ -77,9 +79,21 @@ def _episodes(flags: Booleans) -> int:
     return int(np.count_nonzero(np.diff(flags.astype(np.int8), prepend=0) == 1))
 
 
-def _interval(share: float, effective: float, confidence: float) -> Interval:
+def interval_of(share: float, effective: float, confidence: float) -> Interval:
+    """The interval of Clopper and Pearson, of a number of decisions that need not be whole."""
     tail = 0.5 * (1.0 - confidence)
     hits, misses = share * effective, (1.0 - share) * effective
     low = float(betaincinv(hits, misses + 1.0, tail)) if hits > 0.0 else 0.0
     high = float(betaincinv(hits + 1.0, misses, 1.0 - tail)) if misses > 0.0 else 1.0
     return Interval(low, high)
+
+
+def times_longer(share: Share, required: float, confidence: float) -> float:
+    """How many times as many decisions would decide, if they go on as they are; inf if none."""
+    if share.value == required or not share.decisions:
+        return float("inf")
+    for factor in np.geomspace(1.0, MOST_LONGER, 200):
+        interval = interval_of(share.value, share.effective * float(factor), confidence)
+        if interval.low >= required or interval.high < required:
+            return float(factor)
+    return float("inf")
