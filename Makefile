@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-senses bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-senses study-paradigms study-principles bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -52,8 +52,15 @@ study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with 
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.verdicts
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.scores
 
+study-principles: .venv/ready ## the thesis's principles with figures, and an hour under artificial load
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.principles
+
 study-senses: .venv/ready ## how fast rays, light meters and maps of light are
 	$(BIN)/python -m tests.study.senses
+
+study-paradigms: .venv/ready ## three tasks by three paradigms of the same behaviors, beside chance
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms light --first 1020 --worlds 50
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms patrol tidy --first 1000 --worlds 20
 
 bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'

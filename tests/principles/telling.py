@@ -1,7 +1,7 @@
 """What one process tells of the loaded scenario: the state hash of every step, and its recording.
 
-`python -m tests.principles.telling SECONDS PONDERS `: PONDERS are seconds of real time that
-whatever happens may hold it up.
+`python -m tests.principles.telling SECONDS PONDERS RECORDED`: PONDERS are seconds of real time that
+whatever happens may hold it up, RECORDED how many of the SECONDS go into the recording.
 """
 
 import dataclasses
@@ -30,15 +30,16 @@ def loaded(seconds: float) -> Scenario:
 
 def main() -> None:
     """Print burnt seconds, the digest of the recording, and the hashes, a line each."""
-    seconds, ponders = float(sys.argv[1]), float(sys.argv[2])
+    seconds, ponders, kept = map(float, sys.argv[1:])
     os.environ[PONDERS] = str(ponders)
     made = loaded(seconds)
     burning = Burning(ponders, os.getpid())
     started = Started(made, burning if ponders else None, allow_code=True)
     hashes = [started.scheduler.state_hash().hex()]
     hashes += [started.scheduler.state_hash().hex() for _ in started.steps()]
-    whole = run(made, allow_code=True, observer=burning if ponders else None, light_every=1.0)
-    assert whole.digest.hex() == hashes[-1]
+    short = dataclasses.replace(made, duration=kept)
+    whole = run(short, allow_code=True, observer=burning if ponders else None, light_every=1.0)
+    assert whole.digest.hex() == hashes[round(kept / made.step)]
     recording = hashlib.sha256(recorded_run(whole)).hexdigest()
     sys.stdout.write("\n".join([f"{burning.burnt:.3f}", recording, *hashes]) + "\n")
 

@@ -1,11 +1,12 @@
 """Principle 1h: all that a behavior works on is an abstraction of its world, got by its sensors."""
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
 
-from runtime.run import run
+from runtime.run import Run, run
 from spec_schema.diagnostics import SpecError
 from tests.principles.scenes import (
     GO,
@@ -42,25 +43,39 @@ def test_from_a_node_no_part_of_the_world_can_be_reached() -> None:
     assert {home for home in homes if home.startswith("runtime.world")}
 
 
-def test_what_no_sensor_can_tell_makes_no_difference_to_any_behavior() -> None:
-    """1h: a thing behind a screen is here or there: not one bit of a tick differs."""
-    nodes = {"halt": halt(), "eye": WATCH.format(20)}
+@cache
+def screened() -> tuple[Run, Run]:
+    """The same robot before a screen; behind it something is here and light, or there and heavy."""
     here, there = (
         run(
             scenario(
-                robot("[1 m, 1.5 m]", **nodes),
+                robot("[1 m, 1.5 m]", halt=halt(), eye=WATCH.format(20)),
                 world=SCREENED.format(at=at, mass=mass),
                 duration="4 s",
             )
         )
         for at, mass in (("[4, 1.5]", "1 kg"), ("[5.2, 1.2, 20 deg]", "7 kg"))
     )
+    return here, there
+
+
+def differing() -> int:
+    """How many numbers differ in what the robot's behaviors sampled, told and commanded."""
+    here, there = (made.robots[0].nodes for made in screened())
+    return sum(
+        int((getattr(one, what) != getattr(other, what)).sum())
+        for one, other in zip(here, there, strict=True)
+        for what in ("register", "outputs", "commands")
+    )
+
+
+def test_what_no_sensor_can_tell_makes_no_difference_to_any_behavior() -> None:
+    """1h: a thing behind a screen is here or there: not one bit of a tick differs."""
+    here, there = screened()
 
     assert here.digest != there.digest
-    for one, other in zip(here.robots[0].nodes, there.robots[0].nodes, strict=True):
-        assert np.array_equal(one.register, other.register)
-        assert np.array_equal(one.outputs, other.outputs)
-        assert np.array_equal(one.commands, other.commands)
+    assert len(here.robots[0].nodes[0].times) == 400
+    assert differing() == 0
 
 
 @pytest.mark.parametrize("source", ["crate.x", "r0.clearance", "world.time"])

@@ -28,15 +28,16 @@ class Told(NamedTuple):
     hashes: tuple[str, ...]
 
 
-def told(seconds: float, ponders: float, threads: int) -> Told:
-    """What a fresh process tells."""
+def told(seconds: float, ponders: float, threads: int, recorded: float) -> Told:
+    """What a fresh process tells; so many seconds of it are recorded."""
     several = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
     environment = {
         **os.environ,
         **dict.fromkeys(several, str(threads)),
         "PYTHONHASHSEED": str(threads),
     }
-    command = [sys.executable, "-m", "tests.principles.telling", str(seconds), str(ponders)]
+    command = [sys.executable, "-m", "tests.principles.telling"]
+    command += [str(seconds), str(ponders), str(recorded)]
     ran = subprocess.run(
         command, capture_output=True, text=True, check=True, cwd=ROOT, env=environment
     )
@@ -45,11 +46,11 @@ def told(seconds: float, ponders: float, threads: int) -> Told:
 
 
 @cache
-def both(seconds: float = SECONDS, beside: int = 1) -> tuple[Told, Told]:
-    """Left alone, and under load, with so many busy processes beside it."""
-    alone = told(seconds, 0.0, 1)
-    with busy_processors(beside):
-        return alone, told(seconds, PONDERS, 4)
+def both() -> tuple[Told, Told]:
+    """Left alone, and under load."""
+    alone = told(SECONDS, 0.0, 1, SECONDS)
+    with busy_processors(1):
+        return alone, told(SECONDS, PONDERS, 4, SECONDS)
 
 
 def unequal(alone: Told, laden: Told) -> int:
