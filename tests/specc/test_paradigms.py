@@ -1,0 +1,37 @@
+"""Three tasks by three paradigms: the same behaviors, and robots that do what is asked of them."""
+
+import dataclasses
+
+import pytest
+
+from specc.simulating import simulate_scenario
+from tests.study.paradigms import PARADIGMS, TASKS, hashes_of, outcome, scenario_of
+from verifier.report.requirement_results import Outcome
+
+WAYS = [paradigm for paradigm in PARADIGMS if paradigm != "random"]
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_all_paradigms_have_the_same_behaviors_to_the_last_byte(task: str) -> None:
+    first, *others = (hashes_of(task, paradigm) for paradigm in PARADIGMS)
+
+    assert len(first) >= 3
+    assert all(other == first for other in others)
+
+
+@pytest.mark.parametrize("paradigm", WAYS)
+def test_each_paradigm_finds_the_light_and_the_sentence_says_so_as_well(paradigm: str) -> None:
+    found = outcome("light", paradigm, 2000)
+    made = simulate_scenario(scenario_of("light", paradigm), seed=2000, duration=found.time + 0.1)
+
+    assert found.succeeded
+    assert found.contacts == 0
+    assert made.outcome is Outcome.SATISFIED
+
+
+def test_a_touch_is_a_failure_and_the_sentence_says_so_as_well() -> None:
+    found = outcome("light", "random", 2001)
+    made = simulate_scenario(scenario_of("light", "random"), seed=2001, duration=30.0)
+
+    assert not found.succeeded
+    assert made.outcome is Outcome.VIOLATED
