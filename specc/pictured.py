@@ -215,8 +215,12 @@ def _at(times: Array, poses: Array, time: float) -> tuple[float, float]:
 
 
 def _margin(one: RequirementResult) -> str:
-    """By how much it holds or does not, where that means anything, and when it was decided."""
-    if not np.isfinite(one.robustness) or one.outcome is Judged.OPEN:
+    """By how much it holds or does not, and when that was decided.
+
+    Nothing where that is no quantity: where several units are mixed, or choices compared.
+    """
+    is_number = np.isfinite(one.robustness) and one.unit.text not in {"", "1"}
+    if not is_number or one.outcome is Judged.OPEN:
         return ""
     margin = quantity(abs(one.robustness), one.unit)
     return f"{margin} at {seconds(one.witness.time)}" if one.witness else margin

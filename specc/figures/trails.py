@@ -109,7 +109,7 @@ def is_by_time(trails: Trails) -> bool:
 def time_colors(palette: Palette) -> Colormap:
     """From the beginning of a run to its end: from faint to strong."""
     if palette.hatches:
-        return LinearSegmentedColormap.from_list("time", ["#b4b4b4", "#000000"])
+        return LinearSegmentedColormap.from_list("time", ["#8a8a8a", "#000000"])
     if palette.paper == "#ffffff":
         return LinearSegmentedColormap.from_list("time", ["#f2b04a", "#c8407f", "#35115f"])
     return LinearSegmentedColormap.from_list("time", ["#35608f", "#c65f9c", "#ffe9a8"])
@@ -161,7 +161,7 @@ def _timed(axes: Axes, trails: Trails, robot: int, margin: float, palette: Palet
     span = max(float(times[-1] - times[0]), 1e-9)
     colors = time_colors(palette)((middle - times[0]) / span)
     axes.add_collection(
-        LineCollection(list(pieces_of), colors=colors, linewidths=1.8, capstyle="round", zorder=5.1)
+        LineCollection(list(pieces_of), colors=colors, linewidths=2.0, capstyle="round", zorder=5.1)
     )
 
 

@@ -119,7 +119,7 @@ def placed(points: Array, pose: Array) -> Array:
 def lux_colors(palette: Palette) -> Colormap:
     """From dark to light, of evenly rising lightness (CIE L*): blue to yellow, or greys."""
     if palette.hatches:
-        return LinearSegmentedColormap.from_list("lux", ["#8c8c8c", "#ffffff"])
+        return LinearSegmentedColormap.from_list("lux", ["#c4c4c4", "#ffffff"])
     if palette.paper == "#ffffff":
         return LinearSegmentedColormap.from_list("lux", ["#9aa3b8", "#d0cfc6", "#fff6c0"])
     return LinearSegmentedColormap.from_list("lux", ["#10151c", "#444950", "#8f8760"])
@@ -227,7 +227,8 @@ def _robots(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
 def _lamps(axes: Axes, scene: Scene, things: Array, palette: Palette) -> list[Entry]:
     """Lights as stars, where they are at the end."""
     drawn: Look = {
-        "marker": "*", "linestyle": "None", "ms": 13.0, "mfc": LAMP, "mec": palette.ink,
+        "marker": "*", "linestyle": "None", "ms": 13.0, "mec": palette.ink,
+        "mfc": palette.paper if palette.hatches else LAMP,
         "mew": 0.8, "zorder": 8,
     }  # fmt: skip
     axes.plot(*lamps_at(scene, things).T, **drawn)

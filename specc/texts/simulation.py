@@ -1,6 +1,7 @@
 """What happened in a run of a scenario, as text for people and as a record for programs."""
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -12,9 +13,12 @@ from specc.replaying import Replay
 from specc.simulating import Simulation
 from verifier.report.layout import INDENT, section, table
 from verifier.report.requirement_record import requirements_record, requirements_text
+from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.wording import number, percent, seconds
 
 MILLIMETRES: Final = 1e3
+MOST_NAMED: Final = 4
+"""So many of what was touched are named."""
 
 
 def simulation_text(made: Simulation, took: float | None) -> str:
@@ -27,6 +31,7 @@ def simulation_text(made: Simulation, took: float | None) -> str:
     head = f"{scenario.name}: {seconds(run.duration)} simulated, seed {scenario.seed}"
     if took is not None:
         head += f" ({number(run.duration / max(took, 1e-9))} times as fast as real time)"
+    head += _concluded(made.requirements)
     blocks = [head]
     if made.requirements:
         blocks.append(requirements_text(made.requirements))
@@ -41,9 +46,27 @@ def replay_text(found: Replay) -> str:
     """What a recording says of what was required."""
     scenario = found.scenario
     head = f"{scenario.name}: {seconds(scenario.duration)} recorded, seed {scenario.seed}"
+    head += _concluded(found.requirements)
     return "\n\n".join(
         [head, *([requirements_text(found.requirements)] * bool(found.requirements))]
     )
+
+
+def _concluded(requirements: Sequence[RequirementResult]) -> str:
+    """How it went, in a few words: `: as required`, `: 1 of 2 requirements violated`.
+
+    >>> _concluded(())
+    ''
+    """
+    if not requirements:
+        return ""
+    outcomes = [each.outcome for each in requirements]
+    worst = (one for one in (Outcome.VIOLATED, Outcome.OPEN) if one in outcomes)
+    found = next(worst, None)
+    if found is None:
+        return ": as required"
+    noun = "requirement" if len(outcomes) == 1 else "requirements"
+    return f": {outcomes.count(found)} of {len(outcomes)} {noun} {found}"
 
 
 def simulation_record(made: Simulation, took: float | None) -> dict[str, object]:
@@ -64,6 +87,10 @@ def simulation_record(made: Simulation, took: float | None) -> dict[str, object]
         "events": [
             {"time": e.time, "robot": e.robot, "what": e.what, "where": e.where} for e in run.events
         ],
+        "touches": [
+            {"time": t.time, "robot": t.robot, "what": t.what, "x": t.x, "y": t.y}
+            for t in run.touches
+        ],
         "jams": [_jam_record(jam) for jam in run.audit.jams],
         "worst_penetration": {
             "depth": run.audit.depth,
@@ -76,10 +103,22 @@ def simulation_record(made: Simulation, took: float | None) -> dict[str, object]
 
 def _robot_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
     yield "driven", f"{number(travelled(run, place))} m"
-    count, share = touched(run, place)
-    how = f"{count} time{'' if count == 1 else 's'}, {percent(share)} of the time"
-    yield "touched something", how if count else "never"
+    yield "touched something", _touched_text(run, place)
     yield "nearest to anything", f"{number(float(run.world.clearance[:, place].min()))} m"
+
+
+def _touched_text(run: Run, place: int) -> str:
+    """How often, what, and for how long together."""
+    count, share = touched(run, place)
+    if not count:
+        return "never"
+    name = run.scenario.robots[place].name
+    what = Counter(touch.what for touch in run.touches if touch.robot == name)
+    named = [f"{other} ×{often}" for other, often in what.most_common(MOST_NAMED)]
+    more = ["others"] if len(what) > MOST_NAMED else []
+    times = "once" if count == 1 else f"{count} times"
+    told = f" ({', '.join([*named, *more])})" if len(what) > 1 else f" ({next(iter(what))})"
+    return f"{times}{told}, {percent(share)} of the time"
 
 
 def _node_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
@@ -150,9 +189,9 @@ def travelled(run: Run, place: int) -> float:
 
 def touched(run: Run, place: int) -> tuple[int, float]:
     """How often a robot began to touch something, and for what share of the time it did."""
-    touches = run.world.contacts[:, place] > 0
-    begins = touches & ~np.concatenate([[False], touches[:-1]])
-    return int(begins.sum()), float(touches.mean())
+    name = run.scenario.robots[place].name
+    count = sum(touch.robot == name for touch in run.touches)
+    return count, float((run.world.contacts[:, place] > 0).mean())
 
 
 def acting_shares(track: RobotTrack, duration: float) -> list[float]:
