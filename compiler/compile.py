@@ -38,6 +38,7 @@ from spec_schema.field_forms import Form, Formula, Step
 from spec_schema.field_modes import Modes
 from spec_schema.load import Loaded, examine
 from spec_schema.places import Path as KeyPath
+from spec_schema.wording import with_article
 
 __all__ = ["Compiled", "Judge", "Progress", "compile_file", "compile_loaded"]
 
@@ -82,7 +83,7 @@ def compile_file(path: Path, progress: Progress, judge: Judge | None = None) -> 
 def compile_loaded(loaded: Loaded, progress: Progress, judge: Judge | None = None) -> Compiled:
     """Compile a behavior spec that has been read."""
     if not isinstance(loaded.spec, BehaviorSpec):
-        message = f"a {loaded.spec.kind} is not compiled; a behavior is"
+        message = f"this is {with_article(loaded.spec.kind)}; a behavior belongs here"
         raise SpecError([loaded.error("S200", ("kind",), message, "name a behavior spec")])
     checked = check_behavior(loaded, loaded.spec)
     _stop_at_errors(checked)

@@ -6,7 +6,6 @@ without the compiler.
 """
 
 import dataclasses
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final, final
@@ -14,17 +13,12 @@ from typing import Any, Final, final
 from runtime import artifact
 from runtime.arbiter import Arbiter
 from runtime.architecture import Architecture, Node
-from runtime.arrays import Array
 from runtime.code import Code
 from runtime.container import ArtifactError, Member, join, split
+from runtime.document import Document
 from runtime.program import Program
-from runtime.program_json import from_plain, to_plain
 from runtime.tape import check_code
 from runtime.world.model import Body
-
-FORMAT: Final = 1
-"""The version of what stands in `architecture.json`; a change of meaning raises it."""
-DOCUMENT: Final = "architecture.json"
 
 
 @final
@@ -38,6 +32,9 @@ class Wired:
     architecture: Architecture
     body: Body
     plans: tuple[int, ...]
+
+
+DOCUMENT: Final = Document("architecture", "wired", 1, Wired)
 
 
 def to_bytes(architecture: Architecture, body: Body) -> bytes:
@@ -55,7 +52,7 @@ def to_bytes(architecture: Architecture, body: Body) -> bytes:
         programs += [] if arbiter.plan is None else [arbiter.plan]
     arbiters = tuple(dataclasses.replace(one, plan=None) for one in architecture.arbiters)
     bare = dataclasses.replace(architecture, programs=(), arbiters=arbiters)
-    members = [Member(DOCUMENT, memoryview(_document(Wired(bare, body, tuple(plans)))))]
+    members = [Member(DOCUMENT.name, memoryview(DOCUMENT.written(Wired(bare, body, tuple(plans)))))]
     members += [
         Member(_name(i), memoryview(artifact.to_bytes(program)))
         for i, program in enumerate(programs)
@@ -70,10 +67,10 @@ def from_bytes(data: bytes) -> tuple[Architecture, Body]:
         ArtifactError: the data was cut or altered, or is no artifact of this version.
     """
     members = split(memoryview(data))
-    names = [DOCUMENT, *(_name(i) for i in range(len(members) - 1))]
+    names = [DOCUMENT.name, *(_name(i) for i in range(len(members) - 1))]
     if [name for name, _ in members] != names:
         raise ArtifactError("the artifact has other parts than an architecture and its behaviors")
-    wired = _read(bytes(members[0].content))
+    wired: Wired = DOCUMENT.read(bytes(members[0].content))
     programs = [artifact.from_bytes(bytes(member.content)) for member in members[1:]]
     arbiters = tuple(_planned(wired, programs))
     plans = [place for place in wired.plans if place >= 0]
@@ -91,7 +88,7 @@ def from_bytes(data: bytes) -> tuple[Architecture, Body]:
 
 def is_architecture(data: bytes) -> bool:
     """Whether a container holds an architecture rather than a behavior."""
-    return DOCUMENT in [name for name, _ in split(memoryview(data))]
+    return DOCUMENT.name in [name for name, _ in split(memoryview(data))]
 
 
 def faults(architecture: Architecture, body: Body) -> Iterator[str]:
@@ -153,35 +150,6 @@ def _unreadable(name: str, codes: Iterable[Code], register: tuple[str, ...]) -> 
 
 def _name(place: int) -> str:
     return f"behaviors/{place}.specc"
-
-
-def _document(wired: Wired) -> bytes:
-    document = {"format": FORMAT, "wired": to_plain(Wired, wired)}
-    try:
-        text = json.dumps(document, sort_keys=True, allow_nan=False, ensure_ascii=False, indent=1)
-        return (text + "\n").encode()
-    except ValueError as problem:
-        raise ArtifactError(f"the architecture cannot be written: {problem}") from problem
-
-
-def _read(content: bytes) -> Wired:
-    try:
-        document = json.loads(content.decode())
-    except (ValueError, RecursionError) as problem:
-        raise ArtifactError(f"{DOCUMENT} is not JSON: {problem}") from problem
-    if not isinstance(document, dict) or set(document) != {"format", "wired"}:
-        raise ArtifactError(f"{DOCUMENT} holds no architecture")
-    if document["format"] != FORMAT:
-        raise ArtifactError(
-            f"the artifact has format {document['format']!r}, this version reads {FORMAT}; "
-            "compile the spec again"
-        )
-    wired: Wired = from_plain(Wired, document["wired"], "architecture", _no_tables)
-    return wired
-
-
-def _no_tables(name: str, _shape: tuple[int, ...]) -> Array:
-    raise ArtifactError(f"the document names a table '{name}', which belongs to a behavior")
 
 
 def _planned(wired: Wired, programs: list[Program]) -> Iterator[Arbiter]:

@@ -1,5 +1,8 @@
 """Specs into programs: compiled from YAML, or read from an artifact."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -7,13 +10,15 @@ from compiler.architecture.compile import CompiledArchitecture, compile_architec
 from compiler.compile import Compiled, compile_file
 from compiler.lower_field import Progress
 from compiler.world.scenario import CompiledScenario, compile_scenario
-from runtime import architecture_artifact
+from runtime import architecture_artifact, scenario_artifact
 from runtime.architecture import Architecture
 from runtime.artifact import ArtifactError, to_bytes
 from runtime.artifact import read as read_artifact
 from runtime.program import Program
+from runtime.scenario import Scenario
 from runtime.world.model import Body
 from spec_schema.load import examine
+from spec_schema.wording import with_article
 from specc.faults import fault
 from specc.files import write_atomically
 from specc.sketch_judge import faults_of
@@ -37,13 +42,16 @@ def compile_spec(path: Path | str, progress: Progress = _in_silence) -> Compiled
 
 
 def kind_of(path: Path | str) -> str:
-    """What a spec describes, or seems to: `behavior`, `architecture`, `scenario`...
+    """What a spec, or an artifact, describes, or seems to: `behavior`, `scenario`...
 
     Raises:
         SpecError: the file can't be read.
     """
-    refuse_log(Path(path))
-    loaded = examine(Path(path)).loaded
+    path = Path(path)
+    refuse_log(path)
+    if path.suffix == ".specc":
+        return _kind_of_artifact(path) or "behavior"
+    loaded = examine(path).loaded
     return "behavior" if loaded is None else loaded.spec.kind
 
 
@@ -81,14 +89,62 @@ def load_architecture(path: Path | str) -> tuple[Architecture, Body]:
     if path.suffix != ".specc":
         compiled = compile_architecture_spec(path)
         return compiled.architecture, compiled.body
-    try:
+    with _told(path, "architecture"):
         return architecture_artifact.from_bytes(path.read_bytes())
+
+
+def load_scenario(
+    path: Path | str, progress: Progress = _in_silence, seed: int | None = None
+) -> CompiledScenario:
+    """A scenario: a .yaml is compiled, a .specc read; `seed` in the place of its own.
+
+    Raises:
+        SpecError: the spec is wrong, or the artifact is damaged.
+    """
+    path = Path(path)
+    if path.suffix != ".specc":
+        return compile_scenario_spec(path, progress, seed)
+    with _told(path, "scenario"):
+        found = scenario_artifact.from_bytes(path.read_bytes())
+    return CompiledScenario(found if seed is None else replace(found, seed=seed), ())
+
+
+@contextmanager
+def _told(path: Path, wanted: str) -> Iterator[None]:
+    """What keeps an artifact from being used, as a diagnostic: V335."""
+    try:
+        yield
     except OSError as error:
         why = str(error.strerror or error).lower()
         raise fault("V335", path, f"this artifact can't be read: {why}") from error
     except ArtifactError as error:
+        kind = _kind_of_artifact(path)
+        if kind not in {wanted, ""}:
+            message = (
+                f"this is the artifact of {with_article(kind)}, "
+                f"and that of {with_article(wanted)} belongs here"
+            )
+            raise fault("V335", path, message, f"compile {with_article(wanted)}") from error
         message = f"this artifact can't be used: {error}"
         raise fault("V335", path, message, "compile the spec again") from error
+
+
+def _kind_of_artifact(path: Path) -> str:
+    """What a whole artifact holds; nothing of one that is damaged."""
+    try:
+        data = path.read_bytes()
+        if scenario_artifact.is_scenario(data):
+            return "scenario"
+        return "architecture" if architecture_artifact.is_architecture(data) else "behavior"
+    except (OSError, ArtifactError):
+        return ""
+
+
+def write_scenario(scenario: Scenario, path: Path | str) -> bytes:
+    """Write the `.specc` artifact of a scenario atomically, and return its bytes."""
+    data = scenario_artifact.to_bytes(scenario)
+    write_atomically(Path(path), data)
+    return data
 
 
 def write_architecture(compiled: CompiledArchitecture, path: Path | str) -> bytes:
@@ -133,11 +189,5 @@ def load_program(path: Path | str) -> Program:
     path = Path(path)
     if path.suffix != ".specc":
         return compile_spec(path).program
-    try:
+    with _told(path, "behavior"):
         return read_artifact(path)
-    except OSError as error:
-        why = str(error.strerror or error).lower()
-        raise fault("V335", path, f"this artifact can't be read: {why}") from error
-    except ArtifactError as error:
-        message = f"this artifact can't be used: {error}"
-        raise fault("V335", path, message, "compile the spec again") from error

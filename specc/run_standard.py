@@ -16,7 +16,7 @@ from runtime.world.model import Body
 from spec_schema.diagnostics import SpecError
 from spec_schema.suggest import did_you_mean
 from specc.faults import fault
-from specc.loading import compile_scenario_spec, kind_of, load_architecture
+from specc.loading import kind_of, load_architecture, load_scenario
 from verifier.architectures.document import ScenarioDocument, attached_scenario
 from verifier.report.report import SpecIdentity
 from verifier.traces.files.open_log import attached_programs
@@ -71,7 +71,7 @@ def is_of_runs(spec: Path) -> bool:
     Raises:
         SpecError: it can't be read.
     """
-    return _kind(spec) in {"scenario", "architecture"}
+    return kind_of(spec) in {"scenario", "architecture"}
 
 
 def carried_by(trace: Path) -> Carried | None:
@@ -120,7 +120,7 @@ def standard_of(
     if isinstance(spec, Program):
         return _by_node(trace, carried, spec, f"{spec.name}, as given", own)
     how = f"{spec}, as named by --spec"
-    match _kind(spec):
+    match kind_of(spec):
         case "scenario":
             return _by_scenario(trace, carried, spec, how)
         case "architecture":
@@ -129,15 +129,8 @@ def standard_of(
             return _by_node(trace, carried, program_of(spec), how, own)
 
 
-def _kind(spec: Path) -> str:
-    if spec.suffix != ".specc":
-        return kind_of(spec)
-    data = spec.read_bytes() if spec.is_file() else b""
-    return "architecture" if _is_architecture(data) else "behavior"
-
-
 def _by_scenario(trace: Path, carried: Carried, spec: Path, how: str) -> Standard:
-    scenario = compile_scenario_spec(spec).scenario
+    scenario = load_scenario(spec).scenario
     recorded = {robot.name for robot in carried.robots}
     missing = [robot.name for robot in scenario.robots if robot.name not in recorded]
     if missing:

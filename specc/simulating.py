@@ -14,7 +14,7 @@ from runtime.world.layout import NoRoomError
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.given import Value, seconds
-from specc.loading import compile_scenario_spec
+from specc.loading import load_scenario
 from verifier.architectures.required import results_on
 from verifier.report.requirement_results import Outcome, RequirementResult
 
@@ -63,7 +63,7 @@ def simulate_scenario(
             be run or fails (V382).
     """
     tell = progress or _in_silence
-    scenario = spec if isinstance(spec, Scenario) else compile_scenario_spec(spec, tell).scenario
+    scenario = spec if isinstance(spec, Scenario) else load_scenario(spec, tell).scenario
     if seed is not None:
         scenario = dataclasses.replace(scenario, seed=seed)
     if duration is not None:

@@ -39,13 +39,13 @@ class Wanted:
 def run_scenario(spec: Path, wanted: Wanted) -> Status:
     """Run it, and say whether it went as required."""
     from specc.files import require_suffix
-    from specc.loading import compile_scenario_spec
+    from specc.loading import load_scenario
 
     require_suffix(wanted.output, ".mcap")
     wanted.pictures.refuse_early()
     warmed(spec)
     with progress_bar(f"compiling {spec.name}") as bar:
-        compiled = compile_scenario_spec(spec, bar, wanted.seed)
+        compiled = load_scenario(spec, bar, wanted.seed)
     show_diagnostics(compiled.warnings)
     if wanted.is_watched:
         made, took = _watched(compiled.scenario, wanted), None

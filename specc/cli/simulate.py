@@ -98,7 +98,12 @@ def simulate(
     from specc import loading
 
     pictures = Pictures(poster, film, speed, style)
-    if spec.suffix != ".specc" and loading.kind_of(spec) == "scenario":
+    kind = loading.kind_of(spec)
+    if kind == "architecture":
+        raise typer.BadParameter(
+            f"{spec} is an architecture, which runs in a scenario: name one with it under `robots`"
+        )
+    if kind == "scenario":
         if start or settings or every is not None:
             raise typer.BadParameter("--start, --set and --every are for a behavior alone")
         wanted = Wanted(duration, seed, output, pictures, watch, allow_code, form)

@@ -1,0 +1,120 @@
+"""The artifact of a scenario: one file with its world, its robots and all that drives them.
+
+`scenario.json` and for each architecture `architectures/N.specc`, the very artifact that it has by
+itself with the body that it drives. Nothing else is needed to run it, but Python of its author's
+own, which is looked for beside the file of the architecture that names it.
+"""
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, final
+
+from runtime import architecture_artifact
+from runtime.container import ArtifactError, Member, join, split
+from runtime.document import Document
+from runtime.scenario import Robot, Scenario, Start
+from runtime.scheduler.clock import whole_steps
+from runtime.tape import check_code
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Placed:
+    """A robot, whose architecture and body are the member of that number."""
+
+    name: str
+    architecture: int
+    start: Start
+    origin: str
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Staged:
+    """What stands in the document: a scenario whose robots are placed apart."""
+
+    scenario: Scenario
+    robots: tuple[Placed, ...]
+
+
+DOCUMENT: Final = Document("scenario", "staged", 1, Staged)
+
+
+def to_bytes(scenario: Scenario) -> bytes:
+    """The artifact of a scenario.
+
+    Raises:
+        ArtifactError: its parts do not fit together, or are too large.
+    """
+    for fault in _faults(scenario):
+        raise ArtifactError(f"'{scenario.name}' does not fit together: {fault}")
+    driven = [architecture_artifact.to_bytes(r.architecture, r.body) for r in scenario.robots]
+    once = list(dict.fromkeys(driven))
+    robots = tuple(
+        Placed(robot.name, once.index(data), robot.start, robot.origin)
+        for robot, data in zip(scenario.robots, driven, strict=True)
+    )
+    bare = dataclasses.replace(scenario, robots=())
+    document = memoryview(DOCUMENT.written(Staged(bare, robots)))
+    members = [Member(_name(i), memoryview(data)) for i, data in enumerate(once)]
+    return join([Member(DOCUMENT.name, document), *members])
+
+
+def from_bytes(data: bytes) -> Scenario:
+    """The scenario of an artifact.
+
+    Raises:
+        ArtifactError: the data was cut or altered, or is no artifact of this version.
+    """
+    members = split(memoryview(data))
+    names = [DOCUMENT.name, *(_name(i) for i in range(len(members) - 1))]
+    if [name for name, _ in members] != names:
+        raise ArtifactError("the artifact has other parts than a scenario and its architectures")
+    staged: Staged = DOCUMENT.read(bytes(members[0].content))
+    driven = [architecture_artifact.from_bytes(bytes(content)) for _, content in members[1:]]
+    robots = []
+    for one in staged.robots:
+        if not 0 <= one.architecture < len(driven):
+            raise ArtifactError(f"the artifact lacks the architecture of '{one.name}'")
+        architecture, body = driven[one.architecture]
+        robots.append(Robot(one.name, body, architecture, one.start, one.origin))
+    scenario = dataclasses.replace(staged.scenario, robots=tuple(robots))
+    # One scenario, one artifact: nothing may stand in it that would not be written.
+    if to_bytes(scenario) != data:
+        raise ArtifactError("the artifact was not written by specc")
+    return scenario
+
+
+def is_scenario(data: bytes) -> bool:
+    """Whether a container holds a scenario."""
+    return DOCUMENT.name in [name for name, _ in split(memoryview(data))]
+
+
+def _faults(scenario: Scenario) -> Iterator[str]:
+    """What keeps a scenario from being run, each in a sentence."""
+    names = [robot.name for robot in scenario.robots]
+    if not names or len(set(names)) != len(names):
+        yield "it needs robots of different names"
+    if not (scenario.step > 0.0 and scenario.duration > 0.0):
+        yield "it has no step or no duration"
+        return
+    for robot in scenario.robots:
+        times = [time for s in robot.body.sensors for time in (s.every, s.latency)]
+        times += [t for n in robot.architecture.nodes for t in (n.period, n.response_time)]
+        try:
+            for time in times:
+                whole_steps(time, scenario.step)
+        except ValueError as problem:
+            yield f"of {robot.name} {problem}"
+    for requirement in scenario.requirements:
+        for part in requirement.formula:
+            try:
+                if part.margin is not None:
+                    check_code(part.margin, requirement.quantities)
+            except ValueError as problem:
+                yield f"'{requirement.text}' can't be judged: {problem}"
+
+
+def _name(place: int) -> str:
+    return f"architectures/{place}.specc"
