@@ -12,6 +12,7 @@ from runtime.arrays import Array, Integers
 from specc.figures.braille import Canvas
 from specc.figures.live import View, live_view
 from specc.figures.live_lines import live_lines
+from specc.figures.live_window import has_display, open_window
 from tests.specc.world_scenes import scene, trails
 
 BOX = (0.0, 0.0, 4.0, 2.0)
@@ -165,3 +166,15 @@ def test_moments_that_come_too_fast_are_skipped_but_not_the_last() -> None:
 
     assert out.getvalue().count("drive") <= 3  # the first, the last, and rich's at the end
     assert "9.9 s" in out.getvalue()
+
+
+def test_a_display_that_is_not_there_opens_no_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    assert not has_display()
+    assert open_window("run") is None
+
+    monkeypatch.setenv("DISPLAY", ":9371")
+    assert has_display()
+    assert open_window("run") is None
