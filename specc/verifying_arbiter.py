@@ -1,15 +1,14 @@
 """A recording judged against the spec of an arbiter: does the robot choose as it says?"""
 
-from collections.abc import Callable
 from pathlib import Path
 
 from compiler.architecture.arbiters import compile_arbiter
 from runtime.arbiter import Arbiter, Paradigm
 from runtime.arbitration.build import arbiter_of
-from runtime.arrays import Array
 from runtime.user_code import UserCodeError, load_callee
 from specc.faults import fault
 from verifier.arbitration.judging import judge_arbiter
+from verifier.arbitration.numbers import Decide, Running
 from verifier.arbitration.reader import CHOICE
 from verifier.report.examination import Examination
 from verifier.traces.trace import Trace
@@ -50,8 +49,8 @@ def examine_arbiter(arbiter: Arbiter, trace: Trace, *, only_verdict: bool = Fals
 
 def running(
     arbiter: Arbiter, name: str, period: float, *, seed: int = SEED, beside: Path
-) -> Callable[[Array, float], Array] | None:
-    """One that decides tick by tick, of those that are no rules, under the name of its node.
+) -> Running | None:
+    """What makes one that decides tick by tick, of those that are no rules, under its node's name.
 
     seed: with that of a run, an arbiter that takes chances takes those that it took there.
     beside: the folder of its spec, where code of the user's own is found.
@@ -61,9 +60,13 @@ def running(
     """
     if arbiter.paradigm in {Paradigm.RULES, Paradigm.SUBSUMPTION}:
         return None
-    made = arbiter_of(arbiter, name, period, lambda text: load_callee(text, beside))
-    made.reset(seed)
-    return made.decide
+
+    def fresh(one: Arbiter) -> Decide:
+        made = arbiter_of(one, name, period, lambda text: load_callee(text, beside))
+        made.reset(seed)
+        return made.decide
+
+    return fresh
 
 
 def _period(trace: Trace) -> float:

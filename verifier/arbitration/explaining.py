@@ -184,17 +184,9 @@ def _width(arbiter: Arbiter, names: list[str], decisions: Decisions) -> float:
 
 
 def strays_of(
-    arbiter: Arbiter,
-    decisions: Decisions,
-    explained: Explained | None,
-    expected: Integers,
-    agrees: Booleans,
+    arbiter: Arbiter, followed: Decisions, expected: Integers, agrees: Booleans
 ) -> tuple[Stray, ...]:
-    """Stretches of decisions that stay unexplained, the longest first."""
-    followed = decisions
-    if explained is not None:
-        followed = later(decisions, explained.delay)
-        expected, agrees = explained.chooser(followed), explained.agrees
+    """Stretches of decisions that are not as `expected` (T,), the longest first."""
     out = np.flatnonzero(followed.judged & ~agrees)
     if not out.size:
         return ()
@@ -204,8 +196,8 @@ def strays_of(
     groups = np.split(out, np.flatnonzero(is_new)[1:])
     found = [
         Stray(
-            start=float(decisions.times[group[0]]),
-            end=float(decisions.times[group[-1]]),
+            start=float(followed.times[group[0]]),
+            end=float(followed.times[group[-1]]),
             decisions=group.size,
             robot=arbiter.choices[followed.chosen[group[0]]],
             spec=arbiter.choices[expected[group[0]]] if expected[group[0]] >= 0 else "nothing",

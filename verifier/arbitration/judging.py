@@ -1,25 +1,29 @@
 """A robot's decisions held against an arbiter's spec: the verdict, and what explains it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
 
 from runtime.arbiter import Arbiter, Paradigm
-from runtime.arrays import Array, Integers
-from verifier.arbitration.choosing import Chooser, RuleChooser, rule_chooser, stepwise
+from runtime.arrays import Booleans, Integers
+from verifier.arbitration.choosing import Chooser, RuleChooser, rule_chooser
 from verifier.arbitration.comparisons import opened
 from verifier.arbitration.decisions import Decisions, decisions_of
 from verifier.arbitration.explaining import explained_by, strays_of, thresholds_of
+from verifier.arbitration.numbers import (
+    MOVABLE,
+    Running,
+    chooser_of,
+    numbers_of,
+    slowness_of_numbers,
+)
 from verifier.arbitration.planted import slowness_at_limit
 from verifier.arbitration.refitting import Scales, later
 from verifier.arbitration.regions import boxes, cells, standing_of
 from verifier.arbitration.saying import CONFIDENCE, reasons_of, sentences_of
 from verifier.arbitration.shares import share_of, slowness_of_choices
-from verifier.report.arbitration import (
-    Arbitration,
-)
+from verifier.report.arbitration import Arbitration, Explanation, Region, Threshold
 from verifier.report.report import (
     Report,
     SpecIdentity,
@@ -35,9 +39,6 @@ VERDICTS: Final = {
     Standing.UNDECIDED: Verdict.INCONCLUSIVE,
 }
 
-Decide = Callable[[Array, float], Array]
-"""One tick of an arbiter that runs: what it reads and the time, to a number per choice."""
-
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
@@ -49,60 +50,111 @@ class Arbitrated:
 
 
 def judge_arbiter(
-    arbiter: Arbiter, trace: Trace, running: Decide | None = None, *, only_verdict: bool = False
+    arbiter: Arbiter, trace: Trace, running: Running | None = None, *, only_verdict: bool = False
 ) -> Arbitrated:
     """Hold the decisions in `trace` against `arbiter`.
 
-    running: decides tick by tick, of an arbiter that is no rules; a fresh one.
+    running: makes one that decides tick by tick, of an arbiter that is no rules.
 
     Raises:
         SpecError: the choice, or something that is read, is not in the log (V310).
     """
     decisions = decisions_of(arbiter, trace)
     rules = _rules(arbiter)
+    required = _required(arbiter)
     chooser: Chooser
     if rules is not None:
         chooser = rules
     else:
         assert running is not None, "an arbiter without rules has to run"
-        inputs = len(arbiter.reads) + len(arbiter.controls)
-        chooser = stepwise(running, inputs, arbiter.choices)
+        chooser = chooser_of(arbiter, running)
     expected = chooser(decisions)
     agrees = (expected == decisions.chosen) & decisions.judged
     slowness = slowness_of_choices(decisions.chosen[decisions.judged], len(arbiter.choices))
     if rules is not None:
-        slowness = min(slowness, slowness_at_limit(rules, decisions, _required(arbiter)))
-    share = share_of(agrees[decisions.judged], slowness, CONFIDENCE)
-    required = _required(arbiter)
-    standing = standing_of(share.interval.low, share.interval.high, required)
+        slowness = min(slowness, slowness_at_limit(rules, decisions, required))
+    elif running is not None and arbiter.paradigm in MOVABLE:
+        slowness = min(slowness, slowness_of_numbers(arbiter, running, decisions, required))
     scales = Scales(slowness, CONFIDENCE)
     explained = None
-    if rules is not None and not only_verdict and share.decisions:
-        explained = explained_by(arbiter, rules, decisions, agrees, scales)
+    is_told = not only_verdict and bool(decisions.judged.any())
+    if is_told and rules is not None:
+        explained = _by_rules(arbiter, rules, decisions, agrees, scales)
+    elif is_told and running is not None and arbiter.paradigm in MOVABLE:
+        explained = _by_numbers(arbiter, running, decisions, agrees, scales)
+    section = _section(arbiter, rules, decisions, expected, agrees, scales, explained)
+    standing = standing_of(section.share.interval.low, section.share.interval.high, required)
+    return Arbitrated(_report(arbiter, trace, decisions, section, VERDICTS[standing]), section)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Told:
+    """What explains decisions that differ: decided by `chooser`, `delay` samples later."""
+
+    thresholds: tuple[Threshold, ...]
+    chooser: Chooser
+    delay: int
+    agrees: Booleans
+    tried: tuple[Explanation, ...]
+
+
+def _by_rules(
+    arbiter: Arbiter, rules: RuleChooser, decisions: Decisions, agrees: Booleans, scales: Scales
+) -> _Told:
+    found = explained_by(arbiter, rules, decisions, agrees, scales)
+    thresholds = thresholds_of(arbiter, rules, found, decisions, scales)
+    return _Told(thresholds, found.chooser, found.delay, found.agrees, found.tried)
+
+
+def _by_numbers(
+    arbiter: Arbiter, running: Running, decisions: Decisions, agrees: Booleans, scales: Scales
+) -> _Told | None:
+    if bool(agrees[decisions.judged].all()):
+        return None
+    found = numbers_of(arbiter, running, decisions, agrees, scales)
+    if found.chooser is None:
+        return None
+    return _Told(found.thresholds, found.chooser, 0, found.agrees, ())
+
+
+def _section(
+    arbiter: Arbiter,
+    rules: RuleChooser | None,
+    decisions: Decisions,
+    expected: Integers,
+    agrees: Booleans,
+    scales: Scales,
+    told: _Told | None,
+) -> Arbitration:
+    slowness = scales.slowness
+    share = share_of(agrees[decisions.judged], slowness, CONFIDENCE)
+    found: tuple[Region, ...] = ()
+    if rules is not None:
+        found = cells(arbiter, rules, decisions, agrees, slowness, CONFIDENCE)
+    left, followed = agrees, decisions
+    if told is not None:
+        followed = later(decisions, told.delay)
+        left = told.agrees
     section = Arbitration(
         choices=arbiter.choices,
         share=share,
-        required=required,
+        required=_required(arbiter),
         confusion=_confusion(expected, decisions, len(arbiter.choices)),
-        cells=()
-        if rules is None
-        else cells(arbiter, rules, decisions, agrees, slowness, CONFIDENCE),
+        cells=found,
         boxes=boxes(arbiter, decisions, agrees, slowness, CONFIDENCE),
-        thresholds=()
-        if explained is None or rules is None
-        else thresholds_of(arbiter, rules, explained, decisions, scales),
-        delay=0 if explained is None else explained.delay,
+        thresholds=() if told is None else told.thresholds,
+        delay=0 if told is None else told.delay,
         period=decisions.period,
-        explanations=() if explained is None else explained.tried,
-        strays=strays_of(arbiter, decisions, explained, expected, agrees),
-        unexplained=share.decisions - share.agreeing
-        if explained is None
-        else int((~explained.agrees & later(decisions, explained.delay).judged).sum()),
+        explanations=() if told is None else told.tried,
+        strays=strays_of(
+            arbiter, followed, expected if told is None else told.chooser(followed), left
+        ),
+        unexplained=int((~left & followed.judged).sum()),
         sentences=(),
         origin="" if arbiter.agreement is None else arbiter.agreement.origin,
     )
-    section = replace(section, sentences=sentences_of(section))
-    return Arbitrated(_report(arbiter, trace, decisions, section, VERDICTS[standing]), section)
+    return replace(section, sentences=sentences_of(section))
 
 
 def _required(arbiter: Arbiter) -> float:

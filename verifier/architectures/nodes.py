@@ -4,7 +4,7 @@ A behavior samples its states at its ticks: as a trace they are the measured one
 judged where it had its way. An arbiter's inputs and choice at its ticks are its decisions.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final, final
 
@@ -16,6 +16,7 @@ from runtime.arrays import Array, Booleans
 from runtime.code import Code
 from runtime.program import Binding, Control, Kind, Program, State, Unit
 from verifier.arbitration.judging import judge_arbiter
+from verifier.arbitration.numbers import Running
 from verifier.arbitration.reader import CHOICE
 from verifier.architectures.telling import (
     BEYOND_DOMAIN,
@@ -164,7 +165,7 @@ def examine_decisions(
     arbiter: Arbiter,
     record: NodeRecord,
     source: str,
-    running: Callable[[Array, float], Array] | None = None,
+    running: Running | None = None,
     *,
     only_verdict: bool = False,
 ) -> Examination:
