@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-senses study-paradigms study-principles bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-agents study-senses study-world study-paradigms study-principles bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -55,8 +55,15 @@ study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with 
 study-principles: .venv/ready ## the thesis's principles with figures, and an hour under artificial load
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.principles
 
+study-world: .venv/ready study-senses ## pushing, speed and hours of the simulated world, beside what was measured before
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.speed
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.physics
+
+study-agents: .venv/ready ## the thesis's two agents with a bumper: 8 worlds, an hour each
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.agents
+
 study-senses: .venv/ready ## how fast rays, light meters and maps of light are
-	$(BIN)/python -m tests.study.senses
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.senses
 
 study-paradigms: .venv/ready ## three tasks by three paradigms of the same behaviors, beside chance
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms light --first 1020 --worlds 50
