@@ -232,19 +232,17 @@ def counted(outcomes: Sequence[Outcome]) -> str:
     lost, skipped = len(unusable(outcomes)), len(not_judged(outcomes))
     parts += [f"{skipped} not judged"] if skipped else []
     parts += [f"{lost} can't be used"] if lost else []
-    told = listed([_plural(n, what) for what, n in _things(outcomes).items() if n])
-    return f"{told}: {', '.join(parts) or 'none judged'}"
+    return f"{_things(outcomes)}: {', '.join(parts) or 'none judged'}"
 
 
-def _things(outcomes: Sequence[Outcome]) -> dict[str, int]:
-    """How many recordings there are, and what was judged of those of scenarios."""
-    parts = [each.part for each in verifications(outcomes)]
-    nodes = [each for each in parts if each and each != REQUIREMENTS]
-    return {
-        "recording": len({recording_of(each) for each in outcomes}),
-        "list of requirements": parts.count(REQUIREMENTS),
-        "node": len(nodes) + len(not_judged(outcomes)),
-    }
+def _things(outcomes: Sequence[Outcome]) -> str:
+    """`5 recordings`; of scenarios' `requirements and 4 nodes of 1 recording`."""
+    parts = [each.part for each in verifications(outcomes) if each.part]
+    nodes = len(parts) - parts.count(REQUIREMENTS) + len(not_judged(outcomes))
+    told = ["requirements"] if REQUIREMENTS in parts else []
+    told += [_plural(nodes, "node")] if nodes else []
+    recordings = _plural(len({recording_of(each) for each in outcomes}), "recording")
+    return f"{listed(told)} of {recordings}" if told else recordings
 
 
 def recording_of(outcome: Outcome) -> str:
@@ -257,6 +255,4 @@ def recording_of(outcome: Outcome) -> str:
 
 
 def _plural(count: int, what: str) -> str:
-    if count == 1:
-        return f"{count} {what}"
-    return f"{count} lists of requirements" if what.startswith("list") else f"{count} {what}s"
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"

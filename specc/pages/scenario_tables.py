@@ -72,5 +72,7 @@ def _pool(pool: Pool, anchor: str) -> RunRow:
 
 def _linked(anchor: str, name: str, verdict: Verdict, told: tuple[str, str, str]) -> RunRow:
     spec, judged, found = told
-    cells = ((spec, ""), (judged, ""), (found, STANDINGS[verdict]))
+    # A number and its unit stay on one line.
+    lasted = judged.replace(" s", "\N{NO-BREAK SPACE}s")
+    cells = ((spec, ""), (lasted, ""), (found, STANDINGS[verdict]))
     return RunRow(anchor, name, str(verdict), SIGNS[verdict], cells, "")

@@ -221,7 +221,7 @@ def test_every_form_of_report_has_requirements_and_nodes(
 
     assert status == 1
     printed = capsys.readouterr().out
-    assert printed.splitlines()[-1].startswith("FAIL  1 recording, 1 list of requirements and 4")
+    assert printed.splitlines()[-1].startswith("FAIL  requirements and 4 nodes of 1")
     for path in outputs:
         text = path.read_text()
         assert "r.seek" in text, path
