@@ -122,7 +122,7 @@ PRINCIPLES = (
         "The same physical laws hold for every agent, whatever the processing load.",
         "One space for all bodies, steps of one length, and nothing of a drive depends on who is "
         "first or how much it computes (`runtime/world/drive.py`, `runtime/scheduler/`).",
-        "better grip for the first robot; less speed for one with more nodes",
+        "twice the grip for who is named first; less speed for one with more nodes",
         (
             "test_neither_of_two_equal_robots_that_push_one_another_wins",
             "test_a_robot_with_thirty_more_behaviors_to_run_is_no_slower_and_no_faster",
@@ -139,7 +139,10 @@ PRINCIPLES = (
         "Recordings hold shapes and poses at least 50 times a second, for Foxglove and rerun "
         "(`runtime/recording/drawn.py`); posters and films (`specc/figures/`).",
         "poses looked at four times a second (`runtime/run.py`)",
-        ("test_nothing_happens_between_two_pictures",),
+        (
+            "test_who_watches_the_recording_alone_sees_what_the_robot_does",
+            "test_nothing_happens_between_two_pictures",
+        ),
         lambda: (
             f"from picture to picture a robot moves by at most "
             f"{test_1g_watching.between_pictures():.1f} % of its length; speed and turn, measured "
@@ -213,7 +216,10 @@ PRINCIPLES = (
         "All that are due at an instant sample the same board before anybody speaks "
         "(`runtime/scheduler/scheduler.py`).",
         "at most 20 nodes ticked at an instant",
-        ("test_all_of_them_are_active_at_each_of_their_instants",),
+        (
+            "test_a_hundred_behaviors_more_change_no_place_and_no_time",
+            "test_all_of_them_are_active_at_each_of_their_instants",
+        ),
         lambda: (
             f"{test_2d_parallel.missed()} ticks missed by 101 behaviors; "
             f"{test_2d_parallel.shifted()} numbers of the way differ from that with one"
@@ -253,7 +259,7 @@ PRINCIPLES = (
         "have in reality.",
         "Speeds, lengths and response times are in real units, none scaled; what answers too late "
         "for its field is refused (`compiler/architecture/timing.py`).",
-        "drives that move at half of what they are told",
+        "a world that goes on twice as fast as its behaviors (`runtime/scheduler/scheduler.py`)",
         ("test_before_it_answers_a_robot_moves_by_as_many_lengths_as_its_speed_and_response_say",),
         lambda: (
             f"{test_2g_orders.moved_before(0.3):.6f} lengths before it answers, of 24 cm, at "
