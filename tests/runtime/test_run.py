@@ -112,24 +112,20 @@ def test_a_world_without_room_says_so() -> None:
         run(dataclasses.replace(scenario, world=world))
 
 
-def test_the_same_run_gives_the_same_bytes_in_fresh_processes_and_under_load() -> None:
+def test_the_same_run_gives_the_same_bytes_in_a_fresh_process_and_under_load() -> None:
+    """Here beside other work; tests/principles/test_load.py compares two fresh processes."""
+    fresh = subprocess.Popen(
+        [sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True, cwd=FILE.parents[2]
+    )
     stop = threading.Event()
     burner = threading.Thread(target=_burn, args=(stop,))
     burner.start()
-    fresh = [
-        subprocess.Popen(
-            [sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True, cwd=FILE.parents[2]
-        )
-        for _ in range(2)
-    ]
-    told = [process.communicate()[0].split() for process in fresh]
+    here = run(first_light(2.0), light_every=1.0)
+    data = hashlib.sha256(recorded_run(here)).hexdigest()
     stop.set()
     burner.join()
 
-    here = run(first_light(2.0), light_every=1.0)
-    data = hashlib.sha256(recorded_run(here)).hexdigest()
-
-    assert told == [[here.digest.hex(), data]] * 2
+    assert fresh.communicate()[0].split() == [here.digest.hex(), data]
 
 
 def _burn(stop: threading.Event) -> None:

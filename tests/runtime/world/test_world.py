@@ -13,6 +13,7 @@ import pytest
 
 from runtime.world.model import DriveKind
 from runtime.world.world import SimulatedWorld
+from tests.principles.loads import busy_processors
 from tests.runtime.world.worlds import (
     body,
     box,
@@ -66,13 +67,8 @@ def test_fresh_processes_give_the_same_hashes_whatever_else_the_machine_does() -
         )
 
     alone = started("1").communicate()[0]
-    load = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
-    try:
+    with busy_processors(1):
         loaded = started("2").communicate()[0]
-    finally:
-        for process in load:
-            process.kill()
-            process.wait()
 
     assert len(alone) > 100
     assert alone == loaded
