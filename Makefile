@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: study-arbiters help demo test check format bless study study-verify study-agents study-senses study-world study-paradigms study-principles bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-arbiters study-agents study-senses study-world study-paradigms study-principles bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
