@@ -38,7 +38,7 @@ class Entry:
 class Part:
     """A node, and what it names: a program, an arbiter, or neither where the file can't be used.
 
-    warnings: of the behavior's own spec.
+    warnings: of the behavior's own spec. period: seconds; 0 where it can't be told.
     """
 
     name: str
@@ -216,4 +216,4 @@ def _times(spec: NodeSpec, path: Path, findings: Findings) -> tuple[float, float
     if response < 0.0:
         message = f"nothing acts before it samples (got {spec.response_time})"
         findings.error("S212", (*path, "response_time"), message, "write 0 or more")
-    return period if period is not None and period > 0.0 else 1.0, max(response, 0.0)
+    return max(period or 0.0, 0.0), max(response, 0.0)

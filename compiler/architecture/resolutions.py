@@ -74,11 +74,11 @@ def _resolved(reach: Reach, parts: Parts, wiring: Wiring | None, findings: Findi
     path: Path = ("channels", reach.port.name)
     alone = Resolution(Way.SINGLE, _places(reach.nodes, parts), -1, "", "", findings.origin(path))
     if len(reach.nodes) < 2:
-        if spec is not None:
+        if spec is not None and all(part.is_known for part in parts.nodes.values()):
             who = f"only {reach.nodes[0]} acts" if reach.nodes else "nobody acts"
             message = f"{who} on '{reach.port.name}': there is nothing to resolve"
             findings.warning("S347", path, message, "remove it", key=True)
-        elif not reach.nodes:
+        elif spec is None and not reach.nodes:
             findings.note(f"nobody acts on {reach.port.name}: it does what `rest` says")
         return alone
     if not all(part.is_known for part in parts.nodes.values()):

@@ -48,7 +48,7 @@ def check_timing(
 ) -> None:
     """Findings for nodes that are too slow, and for times that no common step divides."""
     for part in parts.nodes.values():
-        if part.program is None:
+        if part.program is None or part.period == 0.0:
             continue
         if part.program.field.is_map:
             _check_map(part, part.program, findings)

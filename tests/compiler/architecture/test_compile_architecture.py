@@ -21,6 +21,8 @@ Make: TypeAlias = Callable[..., Path]
 AVOID = "sense: {clearance: {from: ahead.range, outside: clip}}"
 SEEK = "sense: {bearing: beacon.bearing, distance: {from: beacon.distance, outside: clip}}"
 
+THREE = "choices: [x, y, z]\nby: {rules: [{choose: x, when: 1 > 2}, {choose: y}, {choose: z}]}\n"
+
 
 def in_silence(_what: str, _done: int, _of: int) -> None:
     """Nobody watches."""
@@ -207,6 +209,33 @@ def test_all_mistakes_are_told_at_once_each_in_its_file(make: Make) -> None:
         compile_architecture(path, in_silence)
 
     assert [found.code for found in caught.value.diagnostics] == ["S320", "S330", "S333", "S340"]
+
+
+def test_a_mistake_is_told_without_what_only_follows_from_it(make: Make) -> None:
+    no_period = node("avoid", AVOID, "0 s")
+    no_file = node("nobody", AVOID)
+
+    assert codes(make({"avoid": no_period})) == {"S212"}
+    only_one_left = {"avoid": no_file, "seek": node("seek", SEEK)}
+    assert codes(make(only_one_left, "{base.turn: {sum: [avoid, seek]}}")) == {"S320"}
+
+
+def test_one_arbiter_of_three_is_told_in_one_sentence(make: Make, tmp_path: Path) -> None:
+    chosen = f"specc: 1\nkind: arbiter\nname: one\nreads: {{}}\n{THREE}"
+    (tmp_path / "one.yaml").write_text(chosen, encoding="utf-8")
+    three = {name: node("seek", SEEK) for name in "abc"}
+    choose = "arbiter: one.yaml, period: 50 ms, choices: {x: [a], y: [b], z: [c]}"
+
+    made = compile_architecture(
+        make(
+            {**three, "choose": choose},
+            "{base.turn: {exclusive: choose}, base.speed: {exclusive: choose}}",
+        ),
+        in_silence,
+    )
+
+    proofs = {channel.resolution.proof for channel in made.architecture.channels}
+    assert proofs == {"choose holds one choice at a time, and none lets two of a, b and c act"}
 
 
 def test_checking_runs_no_user_code_and_makes_no_tables(make: Make, tmp_path: Path) -> None:
