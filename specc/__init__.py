@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from specc.recorded import record_run as record_run
     from specc.reported import write_report as write_report
     from specc.reported import write_reports as write_reports
+    from specc.run_pictures import draw_run as draw_run
+    from specc.run_pictures import film_run as film_run
     from specc.running import simulate as simulate
     from specc.runs import Runs as Runs
     from specc.runs import verify_each as verify_each
@@ -67,6 +69,8 @@ HOMES = {
     "Simulation": "specc.simulating",
     "simulate_scenario": "specc.simulating",
     "record_run": "specc.recorded",
+    "draw_run": "specc.run_pictures",
+    "film_run": "specc.run_pictures",
     "verify": "specc.verifying",
     "verify_run": "specc.verifying_recording",
     "RunVerification": "specc.verifying_recording",

@@ -108,9 +108,10 @@ def simulate(
             raise typer.BadParameter("--start, --set and --every are for a behavior alone")
         wanted = Wanted(duration, seed, output, pictures, watch, allow_code, form)
         return run_scenario(spec, wanted)
-    if pictures.are_wanted or watch:
+    if pictures.are_wanted or watch or speed is not None:
         raise typer.BadParameter(
-            "--poster, --animate and --watch are for a scenario; `specc portrait` draws a behavior"
+            "--poster, --animate, --watch and --speed are for a scenario; `specc portrait` draws "
+            "a behavior"
         )
     begin, held = assignments(start), assignments(settings)
     return _behavior(spec, duration or ALONE, begin, held, every, seed, output, form)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+import specc
 from specc.cli import main
 
 FIRST_LIGHT = "specs/scenarios/first_light.yaml"
@@ -51,6 +52,15 @@ def test_a_recording_gives_the_same_poster_without_a_run(made: Path) -> None:
 
     assert words(again) == words(made / "run.svg")
     assert len(again.read_bytes()) == pytest.approx(len((made / "run.svg").read_bytes()), abs=200)
+
+
+def test_python_draws_what_the_command_draws(made: Path, tmp_path: Path) -> None:
+    specc.draw_run(made / "run.mcap", tmp_path / "run.svg")
+    specc.film_run(made / "run.mcap", tmp_path / "run.gif", speed=4)
+
+    assert words(tmp_path / "run.svg") == words(made / "run.svg")
+    with Image.open(tmp_path / "run.gif") as film:
+        assert getattr(film, "n_frames", 0) == 7
 
 
 def test_watching_changes_nothing(capfd: pytest.CaptureFixture[str]) -> None:
