@@ -1,12 +1,22 @@
 """The two agents of the thesis's section 2.5, with a bumper alone: who explores, who gets stuck?
 
-Run it: `python -m tests.study.agents [--worlds 8] [--minutes 60]`. Beside a prototype of the same
-study (8 worlds, one hour): the walker covered 89 to 100 % of the reachable cells and was never
-stuck; the cart covered 14 to 66 %, and its longest stuck spell was 2,272 to 3,522 s.
+Run it: `python -m tests.study.agents [--worlds 8] [--minutes 60] [--posters DIRECTORY]`.
+
+*Covered*: the share of the cells, 20 cm wide, that the middle of the agent can reach (for the cart:
+that of the largest circle within it) and did reach.
+*Stuck*: the longest spell in which every window of 30 s has less than 25 cm of way, summed over
+looks half a second apart: so it hardly moves at all.
+*Hemmed in*: the longest spell in which every window of 30 s lies within 1 m: so it may well drive,
+but gets nowhere. Whoever is stuck is hemmed in.
+*Let go*: how far the agent gets in 2 s, if it then does nothing but drive forward: far, where it
+was its rule that held it.
 """
 
 import argparse
 import dataclasses
+import os
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,9 +24,18 @@ import numpy as np
 from scipy import ndimage
 
 from runtime.arrays import Array, Booleans
+from runtime.run import run
+from runtime.scenario import Scenario
+from runtime.scheduler.scheduler import Scheduler
+from runtime.scheduler.sensors import SensorBank
 from runtime.world.model import Pose, Shape
+from runtime.world.sensing import senses_of
+from runtime.world.world import Inhabitant, SimulatedWorld
+from specc.drawn import write_picture
+from specc.figures.style_names import Style
+from specc.figures.world import draw_world
 from specc.loading import compile_scenario_spec
-from tests.study.paradigms import started
+from specc.pictured import pictured
 
 ROOT = Path(__file__).parents[2]
 CELL = 0.2
@@ -24,35 +43,118 @@ CELL = 0.2
 FINE = 8
 """So many points along a cell tell whether it can be reached."""
 WINDOW = 30.0
-"""Seconds; with less travel than TRAVEL in them an agent is stuck."""
+"""Seconds: by how it moves in so long, it is judged."""
 TRAVEL = 0.25
+"""Metres of way in a window: with less it is stuck."""
+POCKET = 1.0
+"""Metres across the box of a window: with less it is hemmed in."""
 LOOK = 0.5
 """Seconds between two looks at where it is."""
-RADII = {"random_walker": 0.15, "bumping_cart": 0.12}
-"""Metres: of the round body; of the largest circle within the rectangular one."""
+RELEASE = 2.0
+"""Seconds of driving forward at the end."""
+
+
+class Agent(NamedTuple):
+    """What is run, and what came out of it before.
+
+    scenario: its file. radius: of the largest circle within it (m). heed: its control, or None.
+    """
+
+    scenario: str
+    radius: float
+    heed: float | None
+    before: str
+
+
+AGENTS = {
+    "walker": Agent("random_walker", 0.15, None, "89 to 100 % | 0 s |"),
+    "cart": Agent("bumping_cart", 0.12, None, "14 to 66 % | 2,272 to 3,522 s |"),
+    "deaf cart": Agent("bumping_cart", 0.12, 0.0, "not tried | |"),
+}
+"""`before`: what a prototype of this study found, another engine with other worlds. The deaf cart
+does not feel what it hits while it backs up and turns."""
 
 
 class Report(NamedTuple):
-    """covered: share of the reachable cells. stuck: seconds of the longest stuck spell."""
+    """What became of it.
+
+    covered: a share. stuck, hemmed: seconds of the longest spell. let_go: metres. cpu: seconds.
+    """
 
     covered: float
     stuck: float
+    hemmed: float
+    let_go: float
+    cpu: float
 
 
-def explored(agent: str, seed: int, seconds: float) -> Report:
+def scenario_of(agent: Agent, seed: int) -> Scenario:
     """What one agent does in one world."""
-    spec = ROOT / "specs" / "scenarios" / f"{agent}.yaml"
-    scenario = dataclasses.replace(compile_scenario_spec(spec).scenario, seed=seed)
+    spec = ROOT / "specs" / "scenarios" / f"{agent.scenario}.yaml"
+    found = dataclasses.replace(compile_scenario_spec(spec).scenario, seed=seed)
+    return found if agent.heed is None else heeding(found, agent.heed)
+
+
+def heeding(scenario: Scenario, heed: float) -> Scenario:
+    """The same, with another value of the control `heed` of its one node."""
+    robot = scenario.robots[0]
+    node = robot.architecture.nodes[0]
+    inputs = tuple(
+        dataclasses.replace(each, value=heed) if each.entry == "heed" else each
+        for each in node.inputs
+    )
+    nodes = (dataclasses.replace(node, inputs=inputs),)
+    architecture = dataclasses.replace(robot.architecture, nodes=nodes)
+    robots = (dataclasses.replace(robot, architecture=architecture),)
+    return dataclasses.replace(scenario, robots=robots)
+
+
+def started(scenario: Scenario) -> tuple[SimulatedWorld, Scheduler]:
+    """A world with a scheduler that drives the robot in it, at instant 0; nothing is recorded."""
+    robot = scenario.robots[0]
+    channels = tuple(channel.name for channel in robot.architecture.channels)
+    inhabitants = [Inhabitant(robot.name, robot.body, robot.start.pose, channels)]
+    world = SimulatedWorld(
+        scenario.world, inhabitants, scenario.step, scenario.seed, senses=senses_of
+    )
+    sensors = SensorBank([(robot.name, robot.body)], world, scenario.step, scenario.seed)
+    return world, Scheduler(scenario, world, sensors)
+
+
+def explored(name: str, seed: int, seconds: float) -> Report:
+    """What became of one agent in one world."""
+    begun = os.times().user
+    agent = AGENTS[name]
+    scenario = scenario_of(agent, seed)
     world, scheduler = started(scenario)
     arena = np.array(scenario.world.arena)
-    free = free_points(arena, [(t.shape, t.pose) for t in world.layout.things], RADII[agent])
+    free = free_points(arena, [(t.shape, t.pose) for t in world.layout.things], agent.radius)
     each = round(LOOK / scenario.step)
     places = np.empty((round(seconds / LOOK) + 1, 2))
     places[0] = world.poses()[-1, :2]
     for k in range(1, len(places)):
         scheduler.run(each)
         places[k] = world.poses()[-1, :2]
-    return Report(covered(places - arena.min(axis=0), free), longest_stuck(places))
+    return Report(
+        covered(places - arena.min(axis=0), free),
+        longest(way_of(places) < TRAVEL),
+        longest(box_of(places) < POCKET),
+        released(world, scenario),
+        os.times().user - begun,
+    )
+
+
+def released(world: SimulatedWorld, scenario: Scenario) -> float:
+    """Metres that it gets in RELEASE, driven forward at its fastest."""
+    drive = scenario.robots[0].body.drive
+    channels = scenario.robots[0].architecture.channels
+    ahead = ("base.speed", "base.forward")
+    forward = np.array([drive.speed if each.name in ahead else 0.0 for each in channels])
+    before = world.poses()[-1, :2]
+    world.command(0, forward, np.ones(len(channels), dtype=bool))
+    for _ in range(round(RELEASE / scenario.step)):
+        world.advance()
+    return float(np.hypot(*(world.poses()[-1, :2] - before)))
 
 
 def free_points(arena: Array, things: list[tuple[Shape, Pose]], radius: float) -> Booleans:
@@ -98,32 +200,84 @@ def covered(places: Array, free: Booleans) -> float:
     return len(cells & visited) / len(cells)
 
 
-def longest_stuck(places: Array) -> float:
-    """Seconds of the longest spell in which every window of WINDOW has less than TRAVEL of way."""
+def way_of(places: Array) -> Array:
+    """Metres of way in each window, by its first look."""
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
     window = round(WINDOW / LOOK)
-    is_stuck = way[window:] - way[:-window] < TRAVEL
-    longest = run = 0
-    for stuck in is_stuck.tolist():
-        run = run + 1 if stuck else 0
-        longest = max(longest, run)
-    return (longest - 1) * LOOK + WINDOW if longest else 0.0
+    found: Array = way[window:] - way[:-window]
+    return found
+
+
+def box_of(places: Array) -> Array:
+    """Metres across the box (its diagonal) that holds each window, by its first look."""
+    looks = np.lib.stride_tricks.sliding_window_view(places, round(WINDOW / LOOK) + 1, axis=0)
+    found: Array = np.hypot(*np.ptp(looks, axis=2).T)
+    return found
+
+
+def longest(holds: Booleans) -> float:
+    """Seconds of the longest spell in which it holds of every window."""
+    most = row = 0
+    for one in holds.tolist():
+        row = row + 1 if one else 0
+        most = max(most, row)
+    return (most - 1) * LOOK + WINDOW if most else 0.0
+
+
+def table(worlds: int, minutes: float, workers: int) -> Iterator[str]:
+    """Markdown: a row for each agent and world, and what they come to."""
+    yield "| agent | world | covered | stuck for | hemmed in for | let go: moves |"
+    yield "|---|---|---|---|---|---|"
+    with ProcessPoolExecutor(workers) as pool:
+        for name, agent in AGENTS.items():
+            seeds = range(worlds)
+            found = pool.map(explored, [name] * worlds, seeds, [60.0 * minutes] * worlds)
+            told = []
+            for seed, report in zip(seeds, found, strict=True):
+                told.append(report)
+                yield (
+                    f"| {name} | {seed} | {100.0 * report.covered:.0f} % | {report.stuck:,.0f} s "
+                    f"| {report.hemmed:,.0f} s | {100.0 * report.let_go:.0f} cm |"
+                )
+            yield f"| **{name}** | all | {span(told)} | |"
+            yield f"| {name} | prototype | {agent.before} | |"
+            yield f"| {name} | CPU time | {sum(one.cpu for one in told):.0f} s | | | |"
+
+
+def span(told: list[Report]) -> str:
+    """The least and the largest."""
+    least = [min(column) for column in zip(*told, strict=True)]
+    most = [max(column) for column in zip(*told, strict=True)]
+    return (
+        f"{100.0 * least[0]:.0f} to {100.0 * most[0]:.0f} % | {least[1]:,.0f} to {most[1]:,.0f} s "
+        f"| {least[2]:,.0f} to {most[2]:,.0f} s"
+    )
+
+
+def posters(directory: Path, minutes: float, seeds: dict[str, int]) -> None:
+    """A poster of each agent that is named, in the world of that seed."""
+    directory.mkdir(parents=True, exist_ok=True)
+    for name, seed in seeds.items():
+        scenario = dataclasses.replace(
+            scenario_of(AGENTS[name], seed), duration=60.0 * minutes, about=f"World {seed}."
+        )
+        poster = draw_world(*pictured(run(scenario), ()))
+        write_picture(poster, directory / f"{AGENTS[name].scenario}.png", Style.SCREEN)
 
 
 def main() -> None:
-    """Print a line for each agent and world."""
+    """Print the table, or draw posters."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--worlds", type=int, default=8)
     parser.add_argument("--minutes", type=float, default=60.0)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--posters", type=Path)
     given = parser.parse_args()
-    for agent in RADII:
-        for seed in range(given.worlds):
-            report = explored(agent, seed, 60.0 * given.minutes)
-            print(
-                f"{agent:14} world {seed}: covers {100.0 * report.covered:3.0f} %, "
-                f"stuck for {report.stuck:5.0f} s",
-                flush=True,
-            )
+    if given.posters is not None:
+        posters(given.posters, given.minutes, {"walker": 0, "cart": 0})
+        return
+    for line in table(given.worlds, given.minutes, given.workers):
+        print(line, flush=True)
 
 
 if __name__ == "__main__":
