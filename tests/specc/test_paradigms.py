@@ -1,7 +1,5 @@
 """Three tasks by three paradigms: the same behaviors, and robots that do what is asked of them."""
 
-import dataclasses
-
 import pytest
 
 from specc.simulating import simulate_scenario
@@ -27,6 +25,21 @@ def test_each_paradigm_finds_the_light_and_the_sentence_says_so_as_well(paradigm
     assert found.succeeded
     assert found.contacts == 0
     assert made.outcome is Outcome.SATISFIED
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paradigm", WAYS)
+def test_each_paradigm_goes_from_post_to_post_and_recharges(paradigm: str) -> None:
+    found = outcome("patrol", paradigm, 1002, duration=70.0)
+
+    assert found.succeeded
+    assert found.time < 35.0  # from one post to the other, 5 m away at 0.25 m/s
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paradigm", WAYS)
+def test_each_paradigm_pushes_all_crates_to_walls(paradigm: str) -> None:
+    assert outcome("tidy", paradigm, 1001).succeeded
 
 
 def test_a_touch_is_a_failure_and_the_sentence_says_so_as_well() -> None:

@@ -183,9 +183,13 @@ def hashes_of(task: str, paradigm: str) -> dict[str, str]:
     }
 
 
-def outcome(task: str, paradigm: str, seed: int) -> Outcome:
-    """What becomes of a robot in one world; it ends where that is decided."""
-    scenario = dataclasses.replace(scenario_of(task, paradigm), seed=seed)
+def outcome(task: str, paradigm: str, seed: int, duration: float | None = None) -> Outcome:
+    """What becomes of a robot in one world; it ends where that is decided.
+
+    duration: seconds, in the place of the scenario's own.
+    """
+    whole = scenario_of(task, paradigm)
+    scenario = dataclasses.replace(whole, seed=seed, duration=duration or whole.duration)
     nodes = [node.name for node in scenario.robots[0].architecture.nodes]
     account = Account(nodes.index("battery") if "battery" in nodes else -1)
     begun = started(scenario, observer=account)
