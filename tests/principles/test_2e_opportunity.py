@@ -1,6 +1,7 @@
 """Principle 2e: how often a behavior can act follows from its times, not from its world's cost."""
 
 import time
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,27 +13,28 @@ from tests.principles.scenes import halt, robot, scenario
 PERIODS = (10, 20, 50, 100)
 """Milliseconds, of a behavior that answers as late as its period is long."""
 LAMPS = "".join(
-    f"  l{k}: {{at: [{4.8 + 0.2 * k}, 2.5], power: 1 cd, height: 50 cm}}\n" for k in range(18)
+    f"  l{k}: {{at: [{4.6 + 0.06 * k:.2f}, 2.5], power: 1 cd, height: 50 cm}}\n" for k in range(70)
 )
-COSTLY = f"""
-arena: {{box: [9 m, 3 m]}}
+SCREENED = """
+arena: {box: [9 m, 3 m]}
 things:
-  screen: {{shape: {{box: [0.1, 2.8]}}, at: [4, 1.5], fixed: true, height: [0, 2 m]}}
+  screen: {shape: {box: [0.1, 2.8]}, at: [4, 1.5], fixed: true, height: [0, 2 m]}
+"""
+CHEAP = SCREENED + "lights: {l0: {at: [5, 2.5], power: 1 cd, height: 50 cm}}\n"
+COSTLY = f"""{SCREENED}
 scatter:
   box: {{shape: {{box: [10 cm, 8 cm]}}, count: 60, mass: 0.3 kg, gap: 2 cm,
         area: [[4.1, 0.2], [8.8, 2.8]]}}
 lights:
 {LAMPS}"""
-CHEAP = "\n".join(line for line in COSTLY.splitlines() if "box: {shape" not in line)
-CHEAP = CHEAP.replace("scatter:\n", "").replace("        area: [[4.1, 0.2], [8.8, 2.8]]}\n", "")
-CHEAP = CHEAP.replace(f"lights:\n{LAMPS}".rstrip(), "lights: {l0: {at: [5, 2.5], power: 1 cd}}")
 
 
 @cache
 def runs() -> tuple[Run, Run, float]:
-    """The same robot before a screen: an empty room behind it, or a crowded one with 18 lamps.
+    """The same robot before a screen: an empty room behind it, or a crowded one with 70 lamps.
 
-    A second robot, behind the screen, ploughs through what is there. And how much longer it took.
+    A second robot, behind the screen, ploughs through what is there, and the light on the floor is
+    worked out ten times a second. And how much longer it took.
     """
     found, took = [], []
     for world in (CHEAP, COSTLY):
@@ -42,8 +44,11 @@ def runs() -> tuple[Run, Run, float]:
             world=world,
             duration="3 s",
         )
+        run(
+            replace(made, duration=0.1), light_every=0.1
+        )  # what is compiled or loaded once does not count
         begun = time.process_time()
-        found.append(run(made))
+        found.append(run(made, light_every=0.1))
         took.append(time.process_time() - begun)
     return found[0], found[1], took[1] / took[0]
 
@@ -53,7 +58,7 @@ def test_an_environment_that_costs_more_gives_a_behavior_no_fewer_opportunities(
     cheap, costly, longer = runs()
     one, same = cheap.robots[0], costly.robots[0]
 
-    assert longer > 1.2
+    assert longer > 1.5
     assert np.array_equal(one.nodes[0].times, same.nodes[0].times)
     assert np.array_equal(one.nodes[0].register[:, 0], same.nodes[0].register[:, 0])
     assert np.array_equal(one.channels.times, same.channels.times)
