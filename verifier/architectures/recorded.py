@@ -28,6 +28,7 @@ from verifier.architectures.way import has_its_way
 ACTS: Final = "acts"
 WEIGHT: Final = "weight"
 CHOSEN: Final = "choice"
+UNKNOWN: Final = "who acted is not in the recording"
 WHO_ACTS: Final = (Field(ACTS, is_flag=True), Field(WEIGHT))
 
 
@@ -100,6 +101,8 @@ def _record(
         chosen = np.where(np.isfinite(chosen), chosen, -1.0)
     since = np.maximum(np.searchsorted(instants, times, "right") - 1, 0)
     back = held_back(architecture, place, columns, acts[since], free[since])
+    if instants.size == 1:
+        back = {UNKNOWN: np.ones(times.size, dtype=np.bool_)}
     return NodeRecord(
         name=f"{robot}.{node.name}",
         times=times,
@@ -135,8 +138,11 @@ def acting_in(log: RunLog, robot: str, architecture: Architecture) -> tuple[Arra
     """When who acts changes, who acts (T, nodes) from then on, and the weights of choices."""
     told = []
     for node in architecture.nodes:
-        times, found = log.columns(topic_of(robot, node.name, ACTING), WHO_ACTS)
-        told.append((times, found[ACTS] > 0.0, found[WEIGHT]))
+        topic = topic_of(robot, node.name, ACTING)
+        times, found = log.columns(topic, WHO_ACTS)
+        if not times.size:  # recordings of before told no weights
+            times, found = log.columns(topic, WHO_ACTS[:1])
+        told.append((times, found[ACTS] > 0.0, found.get(WEIGHT, np.zeros(times.size))))
     instants = np.unique(np.concatenate([[-1.0], *(times for times, _, _ in told)]))
     acts = np.zeros((instants.size, len(told)), dtype=np.bool_)
     weights = np.zeros(acts.shape)
