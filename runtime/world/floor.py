@@ -4,12 +4,6 @@ A body that slides on a floor is held at every point of its footprint against th
 velocity. A few *feet* with shares of the weight come close (Goyal, Ruina and Papadopoulos 1991 on
 limit surfaces): each is a joint that holds its point with a limited force. A joint in the middle
 and one on the angle, the usual recipe, is wrong for pushing: it forgets that what turns slides.
-
-The feet are those of a *plate* below the thing, welded to it: a light body that turns as heavily as
-most of the thing. The physics lets the force of a foot point against its velocity as weighed by
-the mass that is felt there, which is less across the line to the centre of mass, where a force
-turns the body as well: m / (1 + r² m / moment). On such a plate it is nearly the same every way.
-Plate and thing have together the mass and the moment of the thing.
 """
 
 import math
@@ -26,9 +20,6 @@ from runtime.world.model import Shape
 GRAVITY: Final = 9.81
 FEET: Final = (2, 2)
 """Feet along and across a footprint."""
-PLATE_MASS: Final = 0.05
-PLATE_MOMENT: Final = 0.6
-"""The shares of a thing's mass and moment of inertia that its plate has."""
 CELLS: Final = 24
 ROUNDS: Final = 100
 DIRECTIONS: Final = 24
@@ -70,15 +61,17 @@ def feet_of(shape: Shape, spread: Spread, grid: tuple[int, int] = FEET) -> Feet:
     centres = centres - shares @ centres
     arm = float(shares @ np.hypot(*centres.T))
     even = centres * (spread.arm / arm if arm > 0.0 else 1.0)
-    grip = _grip(even, shares, spread.gyration * PLATE_MOMENT / PLATE_MASS)
+    grip = _grip(even, shares, spread.gyration)
     return Feet(even * grip + np.array([spread.x, spread.y]), shares / grip)
 
 
 def _grip(places: Array, shares: Array, gyration: float) -> float:
     """The share of the friction with which feet hold a motion without turning.
 
-    Forces of feet do not all point straight back (see above). Slightly larger forces, nearer to
-    the centre, make good for that, and the mean torque stays as it is. gyration: of the plate.
+    The physics lets the force of a foot point against its velocity as weighed by the mass that is
+    felt there, which is less across the line to the centre of mass, where a force turns the thing
+    as well: m / (1 + r² / gyration). So forces of feet do not all point straight back. Larger
+    forces, nearer to the centre, make good for that, and the mean torque stays as it is.
     """
     angles = np.arange(DIRECTIONS) * math.pi / DIRECTIONS
     ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -99,25 +92,11 @@ def stand(space: pymunk.Space, body: pymunk.Body, feet: Feet, friction: float) -
     force = friction * body.mass * GRAVITY
     if force <= 0.0:
         return
-    plate = _plate(space, body)
     for (x, y), share in zip(feet.places.tolist(), feet.shares.tolist(), strict=True):
-        joint = pymunk.PivotJoint(space.static_body, plate, (0.0, 0.0), (x, y))
+        joint = pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), (x, y))
         joint.max_bias = 0.0
         joint.max_force = force * share
         space.add(joint)
-
-
-def _plate(space: pymunk.Space, body: pymunk.Body) -> pymunk.Body:
-    """Take a part of a body's mass and moment for a plate below it, and weld the two together."""
-    plate = pymunk.Body(body.mass * PLATE_MASS, body.moment * PLATE_MOMENT)
-    body.mass *= 1.0 - PLATE_MASS
-    body.moment *= 1.0 - PLATE_MOMENT
-    middle = plate.center_of_gravity = body.center_of_gravity
-    plate.angle = body.angle
-    plate.position = body.position
-    weld = pymunk.PivotJoint(plate, body, middle, middle), pymunk.GearJoint(plate, body, 0.0, 1.0)
-    space.add(plate, *weld)
-    return plate
 
 
 def _nearest(points: Array, centres: Array) -> Integers:

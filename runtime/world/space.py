@@ -15,7 +15,7 @@ from runtime.world.footprint import Spread
 from runtime.world.kernels.speeds import largest
 from runtime.world.model import Pose, Shape
 
-ITERATIONS: Final = 15
+ITERATIONS: Final = 20
 SLOP: Final = 2e-4
 """How deep shapes stand in one another where they touch (m), so that contacts last."""
 SKIN: Final = SLOP / 2.0

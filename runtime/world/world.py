@@ -225,7 +225,8 @@ class SimulatedWorld:
         ours = [touch for touch in self._touches if owner in (touch.a, touch.b)]
         if not ours:
             return ()
-        x, y, heading = self._now()[owner, :3].tolist()
+        body = self._space.bodies[owner]
+        (x, y), heading = body.position, body.angle
         found = []
         for touch in ours:
             bearing = math.remainder(math.atan2(touch.y - y, touch.x - x) - heading, math.tau)

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from runtime.world.floor import PLATE_MASS, PLATE_MOMENT, feet_of
+from runtime.world.floor import feet_of
 from runtime.world.footprint import bounds, contains, in_world, points_of, scaled, spread
 from runtime.world.heights import bands
 from runtime.world.model import Disc, Polygon, Pose, Shape
@@ -87,14 +87,13 @@ def test_a_footprint_in_the_world_is_scaled_turned_and_moved(
 
 
 def felt(shape: Shape, velocity: np.ndarray, turn: float) -> tuple[np.ndarray, float]:
-    """Force and torque of feet, by the law of the physics: weighed by the plate's mass there."""
+    """Force and torque of feet, by the law of the physics: weighed by the mass at each foot."""
     lies = spread(shape)
-    gyration = lies.gyration * PLATE_MOMENT / PLATE_MASS
     feet = feet_of(shape, lies)
     force, torque = np.zeros(2), 0.0
     for place, share in zip(feet.places - (lies.x, lies.y), feet.shares, strict=True):
         across = np.array([-place[1], place[0]])
-        inverse = np.eye(2) + np.outer(across, across) / gyration
+        inverse = np.eye(2) + np.outer(across, across) / lies.gyration
         pull = np.linalg.solve(inverse, velocity + turn * across)
         one = -share * pull / np.linalg.norm(pull)
         force += one

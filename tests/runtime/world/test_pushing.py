@@ -7,7 +7,7 @@ import pytest
 
 from runtime.world.world import SimulatedWorld
 from tests.runtime.world.quasi_static import pushed
-from tests.runtime.world.worlds import body, box, drive, shove, simulated, thing, world
+from tests.runtime.world.worlds import body, box, drive, simulated, thing, world
 
 PUSH = 0.3
 SPEED = 0.05
@@ -26,7 +26,7 @@ def pose_after_push(offset: float, friction: float) -> tuple[tuple[float, ...], 
 
 
 @pytest.mark.parametrize("offset", [0.01, 0.03, 0.05])
-@pytest.mark.parametrize("friction", [0.0, 0.06, 0.36])
+@pytest.mark.parametrize("friction", [0.0, 0.06])
 def test_a_pushed_box_ends_where_the_quasi_static_reference_ends(
     offset: float, friction: float
 ) -> None:
@@ -37,7 +37,7 @@ def test_a_pushed_box_ends_where_the_quasi_static_reference_ends(
 
     assert math.hypot(found[0] - wanted[0], found[1] - wanted[1]) <= 6e-3
     assert abs(found[2] - wanted[2]) <= math.radians(3.0)
-    assert abs(wanted[2]) > math.radians(9.0)  # there was something to turn
+    assert abs(wanted[2]) > math.radians(10.0)  # there was something to turn
 
 
 def test_the_reference_goes_straight_when_it_is_pushed_in_the_middle() -> None:
@@ -51,7 +51,7 @@ def test_the_reference_goes_straight_when_it_is_pushed_in_the_middle() -> None:
 def test_a_sliding_box_stops_where_dry_friction_stops_it() -> None:
     crate = thing("crate", box(0.2, 0.2), (1.0, 1.0, 0.0), floor=0.4)
     sim = simulated(world([crate]))
-    shove(sim, 0, (1.0, 0.0), 0.0)
+    sim._space.bodies[0].velocity = (1.0, 0.0)
 
     drive_nothing(sim, 0.5)
 
@@ -66,7 +66,7 @@ def drive_nothing(sim: SimulatedWorld, seconds: float) -> None:
 def test_a_spinning_box_stops_by_the_torque_of_its_whole_surface() -> None:
     crate = thing("crate", box(0.2, 0.2), (1.0, 1.0, 0.0), floor=0.4)
     sim = simulated(world([crate]))
-    shove(sim, 0, (0.0, 0.0), 5.0)
+    sim._space.bodies[0].angular_velocity = 5.0
     gyration = 2 * 0.2**2 / 12.0
     arm = 0.2 * (math.sqrt(2.0) + math.asinh(1.0)) / 6.0  # the mean distance from the middle
 
@@ -123,17 +123,3 @@ def test_robots_push_one_another_by_their_grip() -> None:
     drive(sim, 0.3, 0.0, seconds=3.0)
 
     assert sim.poses()[1, 0] > 1.7  # the heavier one has its way
-
-
-def test_what_a_thing_stands_on_stays_below_it() -> None:
-    crate = thing("crate", box(0.12, 0.2), (1.0, 1.0, 0.0), friction=0.36)
-    sim = simulated(world([crate]), (body(mass=20.0, friction=1.0), (0.8, 1.05, 0.0)))
-    own = sim._space.bodies[0]
-    (plate,) = {joint.a for joint in own.constraints}
-
-    drive(sim, 0.3, 0.2, seconds=3.0)
-
-    assert abs(own.angle) > math.radians(20.0)
-    assert math.dist(plate.position, own.position) < 1e-4
-    assert plate.angle == pytest.approx(own.angle, abs=1e-3)
-    assert plate.mass + own.mass == pytest.approx(1.0)

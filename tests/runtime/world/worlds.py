@@ -94,14 +94,6 @@ def drive(sim: SimulatedWorld, *values: float, seconds: float, robot: int = 0) -
         sim.advance()
 
 
-def shove(sim: SimulatedWorld, solid: int, velocity: tuple[float, float], turn: float) -> None:
-    """Give a thing a velocity and a turn, and what is welded to it the same."""
-    body = sim._space.bodies[solid]
-    welded = {part for joint in body.constraints for part in (joint.a, joint.b)}
-    for part in welded | {body}:
-        part.velocity, part.angular_velocity = velocity, turn
-
-
 def scatter(
     name: str,
     count: int,
