@@ -11,7 +11,7 @@ from rich.console import Console
 from runtime.arrays import Array, Booleans
 from runtime.scenario import Scenario
 from runtime.scheduler.environment import Delivery
-from runtime.scheduler.observer import Event, Tick
+from runtime.scheduler.observer import Event, Resolved, Tick
 from runtime.world.layout import lay_out
 from specc.figures.eyes import Glimpse, glimpses
 from specc.figures.live import Show, live_view
@@ -75,6 +75,9 @@ class Onlooker:
         """Nothing is shown of it."""
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
+        """Nothing is shown of it."""
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
         """Nothing is shown of it."""
 
     def happened(self, instant: int, event: Event) -> None:

@@ -11,12 +11,13 @@ from runtime.recording.tracks import (
     ChannelTrack,
     Happening,
     NodeTrack,
+    ResolutionTrack,
     RobotTrack,
     SensorTrack,
 )
 from runtime.scenario import Robot, Scenario
 from runtime.scheduler.environment import Delivery
-from runtime.scheduler.observer import Event, Observer, Tick
+from runtime.scheduler.observer import Event, Observer, Resolved, Tick
 
 
 @final
@@ -55,6 +56,11 @@ class Gathering:
         self._notes[robot].channels[instant] = (channels.copy(), driven.copy())
         self._also.commanded(instant, robot, channels, driven)
 
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
+        """Keep who has their way on a channel."""
+        self._notes[robot].resolutions[channel].append((instant, how))
+        self._also.resolved(instant, robot, channel, how)
+
     def happened(self, instant: int, event: Event) -> None:
         """Keep what happened, by name."""
         robot = self._robots[event.robot]
@@ -84,6 +90,9 @@ class _Notes:
         self.sensors: list[list[tuple[int, Array]]] = [[] for _ in robot.body.sensors]
         self.acting: dict[int, tuple[Booleans, Array]] = {}
         self.channels: dict[int, tuple[Array, Booleans]] = {}
+        self.resolutions: list[list[tuple[int, Resolved]]] = [
+            [] for _ in robot.architecture.channels
+        ]
 
     def track(self, step: float) -> RobotTrack:
         """As arrays."""
@@ -107,6 +116,15 @@ class _Notes:
                 _times(list(self.channels), step),
                 _rows([values for values, _ in self.channels.values()], channels),
                 _flags([driven for _, driven in self.channels.values()], channels),
+            ),
+            resolutions=tuple(
+                ResolutionTrack(
+                    _times([instant for instant, _ in told], step),
+                    _rows([np.array(how.weights) for _, how in told], count),
+                    np.array([how.is_limited for _, how in told], dtype=np.bool_),
+                    np.array([how.is_in_conflict for _, how in told], dtype=np.bool_),
+                )
+                for told in self.resolutions
             ),
         )
 

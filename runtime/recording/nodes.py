@@ -1,7 +1,8 @@
 """What the nodes, sensors and channels of a robot said, as topics of a recording.
 
 `/ROBOT/NODE/state`, `control`, `output` at a behavior's ticks; `reads` and `choice` at those of an
-arbiter; `acting` where that changes; `/ROBOT/SENSOR/readings`; `/ROBOT/base/channels`, `driven`.
+arbiter; `acting` where that changes; `/ROBOT/SENSOR/readings`; `/ROBOT/base/channels`, `driven`;
+`/ROBOT/base/turn/resolved`.
 What a node says stands at its tick: it takes effect its response time later.
 """
 
@@ -15,6 +16,7 @@ from runtime.architecture import Architecture, Node
 from runtime.arrays import Array
 from runtime.program import Control, Kind, Output, State
 from runtime.recording.messages import Messages
+from runtime.recording.resolutions import tell_resolutions
 from runtime.recording.tables import Field, tell_rows
 from runtime.recording.tracks import NodeTrack, RobotTrack
 from runtime.scenario import Robot
@@ -45,6 +47,7 @@ def tell_robot(messages: Messages, robot: Robot, track: RobotTrack) -> None:
         _tell_node(messages, robot, node, ticks)
         _tell_acting(messages, robot.name, node, track, place)
     _tell_channels(messages, robot, track)
+    tell_resolutions(messages, robot, track)
 
 
 def _tell_sensors(messages: Messages, robot: Robot, track: RobotTrack) -> None:

@@ -76,13 +76,28 @@ class ChannelTrack:
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
+class ResolutionTrack:
+    """Who has their way on a channel from times (T,) on; see `runtime.scheduler.observer.Resolved`.
+
+    weights: (T, nodes). limited, in_conflict: (T,).
+    """
+
+    times: Array
+    weights: Array
+    limited: Booleans
+    in_conflict: Booleans
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
 class RobotTrack:
-    """Everything that went on in one robot, in the order of its nodes and sensors."""
+    """Everything that went on in one robot, in the order of its nodes, sensors and channels."""
 
     nodes: tuple[NodeTrack, ...]
     sensors: tuple[SensorTrack, ...]
     acting: ActingTrack
     channels: ChannelTrack
+    resolutions: tuple[ResolutionTrack, ...]
 
 
 @final

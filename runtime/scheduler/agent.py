@@ -24,7 +24,7 @@ from runtime.scheduler.nodes import (
     Said,
     Ticking,
 )
-from runtime.scheduler.observer import Event, Observer, Tick, What
+from runtime.scheduler.observer import Event, Observer, Resolved, Tick, What
 from runtime.scheduler.ticker import Ticker, domains_of
 from runtime.user_code import Callee
 
@@ -65,6 +65,7 @@ class Agent:
         self._acting_may_differ = self._channels_may_differ = True
         self.accelerates = False
         self._told: dict[tuple[int, int], tuple[What, ...]] = {}
+        self._told_how: list[Resolved | None] = [None] * len(self.channels)
 
     def tick(self, instant: int, time: float, node: int) -> Said:
         """Let one node sample the board."""
@@ -125,7 +126,11 @@ class Agent:
         ]
 
     def _remark(self, instant: int, place: int, channel: Resolver) -> None:
-        flags = ((channel.in_conflict, What.CONFLICT), (channel.is_limited, What.LIMITED))
+        how = channel.how
+        if how != self._told_how[place]:
+            self._told_how[place] = how
+            self._observer.resolved(instant, self._place, place, how)
+        flags = ((how.is_in_conflict, What.CONFLICT), (how.is_limited, What.LIMITED))
         self._tell(instant, -1, place, tuple(what for is_so, what in flags if is_so))
 
     def _tell(self, instant: int, node: int, channel: int, remarks: tuple[What, ...]) -> None:

@@ -8,6 +8,7 @@ from typing import NamedTuple, final
 from runtime.architecture import Architecture, Channel, Way
 from runtime.arrays import Array
 from runtime.scheduler.acting import Acting
+from runtime.scheduler.observer import Resolved
 from runtime.user_code import Callee, UserCodeError, call
 
 
@@ -25,8 +26,7 @@ class Resolver:
     """One channel: its set-point now, and how it comes to it.
 
     value: the set-point. is_driven: False where it rolls freely. rate: of change of the set-point
-    per second, of channels that are accelerated; else 0. in_conflict: two nodes act that never
-    should at once. is_limited: what was wanted is beyond the channel's domain.
+    per second, of channels that are accelerated; else 0. how: who has their way.
     """
 
     def __init__(
@@ -49,7 +49,8 @@ class Resolver:
         self.value = min(max(0.0, self._channel.low), self._channel.high)
         self.is_driven = self._channel.rest != "coast"
         self.rate = 0.0
-        self.in_conflict = self.is_limited = False
+        nobody = (0.0,) * len(architecture.nodes)
+        self.how = self._resting = Resolved(nobody, is_limited=False, is_in_conflict=False)
 
     def resolve(self, acting: Acting, commands: Sequence[Array]) -> None:
         """Take what the nodes that act want, by the channel's own way.
@@ -60,15 +61,15 @@ class Resolver:
         does = acting.does
         mine = [member for member in self._members if does[member.node]]
         self.rate = 0.0
-        self.in_conflict = self._way in {Way.EXCLUSIVE, Way.SINGLE} and len(mine) > 1
-        self.is_limited = False
+        self.how = self._resting
         self.is_driven = bool(mine) or self._channel.rest != "coast"
         if not mine:
             if self._channel.rest == "stop":
-                self._set(0.0, silently=True)
+                self.value = self._limited(0.0)
             return
         wants = [float(commands[member.node][member.column]) for member in mine]
-        wanted = self._put_together(mine, wants, acting)
+        wanted, weights = self._put_together(mine, wants, acting)
+        self._note(mine, weights)
         if mine[0].node in self._accelerates:
             self.rate = wanted
         else:
@@ -81,22 +82,33 @@ class Resolver:
 
     def _put_together(
         self, mine: Sequence[_Member], wants: Sequence[float], acting: Acting
-    ) -> float:
+    ) -> tuple[float, Sequence[float]]:
+        """What they come to, and how much each of them counts."""
         match self._way:
             case Way.SINGLE | Way.EXCLUSIVE | Way.PRIORITY:
-                return wants[0]
+                return wants[0], (1.0,)
             case Way.SUM:
-                return math.fsum(wants)
+                return math.fsum(wants), (1.0,) * len(mine)
             case Way.BLEND:
                 by = acting.by.get(self._arbiter)
                 weights = [by[member.node] if by else 1.0 for member in mine]
                 total = math.fsum(weights)
                 if total <= 0.0:  # none of them is named by this arbiter
                     weights, total = [1.0] * len(mine), float(len(mine))
-                return math.fsum(w * x for w, x in zip(weights, wants, strict=True)) / total
+                mean = math.fsum(w * x for w, x in zip(weights, wants, strict=True)) / total
+                return mean, [weight / total for weight in weights]
             case Way.FUNCTION:
                 names = [member.name for member in mine]
-                return self._called(dict(zip(names, wants, strict=True)))
+                called = self._called(dict(zip(names, wants, strict=True)))
+                return called, (1.0,) * len(mine)
+
+    def _note(self, mine: Sequence[_Member], weights: Sequence[float]) -> None:
+        """Keep how much each counts; those beyond the last weight count nothing."""
+        counts = [*self._resting.weights]
+        for member, weight in zip(mine, weights, strict=False):
+            counts[member.node] = weight
+        conflicts = self._way in {Way.EXCLUSIVE, Way.SINGLE} and len(mine) > 1
+        self.how = Resolved(tuple(counts), is_limited=False, is_in_conflict=conflicts)
 
     def _called(self, wants: Mapping[str, float]) -> float:
         assert self._function is not None, "found at the beginning"
@@ -105,9 +117,14 @@ class Resolver:
             return float(answer)
         raise UserCodeError(f"{self._text} gave {answer!r:.60}, which is no finite number")
 
-    def _set(self, wanted: float, *, silently: bool = False) -> None:
-        self.value = min(max(wanted, self._channel.low), self._channel.high)
-        self.is_limited = self.value != wanted and not silently
+    def _set(self, wanted: float) -> None:
+        self.value = self._limited(wanted)
+        is_limited = self.value != wanted
+        if is_limited != self.how.is_limited:
+            self.how = self.how._replace(is_limited=is_limited)
+
+    def _limited(self, wanted: float) -> float:
+        return min(max(wanted, self._channel.low), self._channel.high)
 
 
 def _members(architecture: Architecture, place: int) -> tuple[_Member, ...]:

@@ -56,6 +56,21 @@ class Event(NamedTuple):
     channel: int
 
 
+@final
+class Resolved(NamedTuple):
+    """Who has their way on a channel.
+
+    weights: for each node of the robot how much what it wants counts. Of a blend they add up to 1;
+    else 1 for each that has its way. All 0 where nobody drives the channel.
+    is_limited: what was wanted is beyond the channel's domain. is_in_conflict: two nodes act that
+    never should at once.
+    """
+
+    weights: tuple[float, ...]
+    is_limited: bool
+    is_in_conflict: bool
+
+
 class Observer(Protocol):
     """Gets what happens, in the order in which it happens."""
 
@@ -73,6 +88,10 @@ class Observer(Protocol):
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
         """The channels (c,) were set anew; see `Environment.command`."""
+        ...
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
+        """Another has its way on a channel, or with another weight."""
         ...
 
     def happened(self, instant: int, event: Event) -> None:
@@ -94,6 +113,9 @@ class Silent:
         """Do nothing."""
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
+        """Do nothing."""
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
         """Do nothing."""
 
     def happened(self, instant: int, event: Event) -> None:

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from runtime.recording.resolutions import shares_of
 from runtime.recording.tracks import Happening, RobotTrack
 from runtime.run import Run
 from runtime.world.audit import Jam
@@ -127,6 +128,9 @@ def _node_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
     for node, share in zip(architecture.nodes, shares, strict=True):
         if node.behavior >= 0:
             yield f"{node.name} acted", f"{percent(share)} of the time"
+    for channel, drivers in driving_shares(run, place).items():
+        told = [f"{name} {percent(share)}" for name, share in drivers.items()]
+        yield f"{channel} driven by", ", ".join(told)
 
 
 def _audit_rows(run: Run) -> Iterator[tuple[str, str]]:
@@ -178,6 +182,18 @@ def _robot_record(run: Run, place: int) -> dict[str, object]:
             for node, share in zip(architecture.nodes, shares, strict=True)
             if node.behavior >= 0
         },
+        "driving": driving_shares(run, place),
+    }
+
+
+def driving_shares(run: Run, place: int) -> dict[str, dict[str, float]]:
+    """For each channel of a robot who had what share of it."""
+    architecture, track = run.scenario.robots[place].architecture, run.robots[place]
+    return {
+        channel.name: shares_of(architecture, i, how, run.duration)
+        for i, (channel, how) in enumerate(
+            zip(architecture.channels, track.resolutions, strict=True)
+        )
     }
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans
 from runtime.scheduler.environment import Delivery
-from runtime.scheduler.observer import Event, Tick
+from runtime.scheduler.observer import Event, Resolved, Tick
 
 
 class Burning:
@@ -41,6 +41,10 @@ class Burning:
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
         """The channels were set anew."""
+        self._ponder(0.2)
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
+        """Another has its way on a channel."""
         self._ponder(0.2)
 
     def happened(self, instant: int, event: Event) -> None:

@@ -23,7 +23,7 @@ from runtime.arrays import Array, Booleans
 from runtime.artifact import to_bytes
 from runtime.scenario import Scenario
 from runtime.scheduler.environment import Delivery
-from runtime.scheduler.observer import Event, Tick
+from runtime.scheduler.observer import Event, Resolved, Tick
 from runtime.start import started
 from runtime.world.world import SimulatedWorld
 from specc.loading import compile_scenario_spec
@@ -160,6 +160,9 @@ class Account:
         """Do nothing."""
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
+        """Do nothing."""
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
         """Do nothing."""
 
     def happened(self, instant: int, event: Event) -> None:

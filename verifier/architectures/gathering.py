@@ -7,7 +7,7 @@ import numpy as np
 from runtime.architecture import Architecture
 from runtime.arrays import Array, Booleans
 from runtime.scheduler.environment import Delivery
-from runtime.scheduler.observer import Event, Tick
+from runtime.scheduler.observer import Event, Resolved, Tick
 from verifier.architectures.nodes import NodeRecord, held_back
 from verifier.architectures.way import has_its_way
 
@@ -37,6 +37,9 @@ class Gathered:
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
         """Do nothing: who acts is told apart."""
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
+        """Do nothing."""
 
     def happened(self, instant: int, event: Event) -> None:
         """Do nothing."""

@@ -98,6 +98,7 @@ def _track(log: RunLog, robot: Robot) -> RobotTrack:
         ),
         acting=ActingTrack(np.zeros(0), none > 0.0, none),
         channels=ChannelTrack(np.zeros(0), none, none > 0.0),
+        resolutions=(),
     )
 
 

@@ -29,7 +29,7 @@ from runtime.code import Code
 from runtime.program import Kind, Origin, Program, Unit
 from runtime.scenario import Robot, Scenario, Start
 from runtime.scheduler.environment import Delivery
-from runtime.scheduler.observer import Event, Observer, Tick
+from runtime.scheduler.observer import Event, Observer, Resolved, Tick
 from runtime.scheduler.scheduler import Scheduler
 from runtime.world.model import (
     Body,
@@ -306,6 +306,7 @@ class Noted(Observer):
         self.channels: list[tuple[int, int, Array, Booleans]] = []
         self.acts: list[tuple[int, int, Booleans, Array]] = []
         self.readings: list[tuple[int, Delivery]] = []
+        self.resolutions: list[tuple[int, int, int, Resolved]] = []
 
     def sensed(self, instant: int, delivery: Delivery) -> None:
         self.readings.append((instant, delivery))
@@ -319,6 +320,9 @@ class Noted(Observer):
 
     def commanded(self, instant: int, robot: int, channels: Array, driven: Booleans) -> None:
         self.channels.append((instant, robot, channels.copy(), driven.copy()))
+
+    def resolved(self, instant: int, robot: int, channel: int, how: Resolved) -> None:
+        self.resolutions.append((instant, robot, channel, how))
 
     def happened(self, instant: int, event: Event) -> None:
         self.events.append((instant, event))

@@ -76,6 +76,28 @@ def test_a_channel_is_resolved_in_its_way(
     assert not noted.events
 
 
+@pytest.mark.parametrize(
+    ("way", "nodes", "expected"),
+    [
+        (resolution(Way.SUM, 0, 1, 2), [A, B, C], {0: (1, 1, 0), 2: (1, 1, 1), 4: (1, 1, 0)}),
+        (resolution(Way.PRIORITY, 2, 1, 0), [A, B, C], {0: (0, 1, 0), 2: (0, 0, 1), 4: (0, 1, 0)}),
+        (resolution(Way.PRIORITY, 0, 1, 2), [A, B, C], {0: (1, 0, 0)}),
+        (resolution(Way.BLEND, 0, 2), [A, C], {0: (1, 0), 2: (0.5, 0.5), 4: (1, 0)}),
+        (resolution(Way.EXCLUSIVE, 1, 0), [A, C], {0: (1, 0), 2: (0, 1), 4: (1, 0)}),
+        (resolution(Way.SINGLE, 0), [C], {0: (0,), 2: (1,), 4: (0,)}),
+    ],
+)
+def test_whoever_has_its_way_is_told_where_that_changes(
+    way: Resolution, nodes: Sequence[N], expected: dict[int, tuple[float, ...]]
+) -> None:
+    _, noted = driven(nodes, way, 8)
+
+    told = {instant: how.weights for instant, _, channel, how in noted.resolutions if channel == 0}
+    assert told == expected
+    conflicts = {instant for instant, _, _, how in noted.resolutions if how.is_in_conflict}
+    assert conflicts == ({2} if way.way is Way.EXCLUSIVE else set())
+
+
 def test_a_broken_exclusion_is_told_when_it_begins_and_the_first_has_its_way() -> None:
     values, noted = driven([A, C], resolution(Way.EXCLUSIVE, 1, 0), 8)
 
@@ -132,6 +154,16 @@ def test_what_is_wanted_beyond_the_domain_is_limited_and_told_once() -> None:
 
     assert values == [5.0] * 4
     assert [event.what for _, event in noted.events] == [What.LIMITED]
+
+
+def test_a_channel_tells_how_long_it_is_limited() -> None:
+    _, noted = driven([C], resolution(Way.SINGLE, 0), 8, limit=5.0)
+
+    assert [(i, how.is_limited) for i, _, channel, how in noted.resolutions if channel == 0] == [
+        (0, False),
+        (2, True),
+        (4, False),
+    ]
 
 
 def test_accelerations_and_set_points_cannot_be_added() -> None:
