@@ -74,8 +74,12 @@ PLATES: Final = (
     Plate("light_dynamics", "specs/scenarios/light_dynamics.yaml",
           "The same behaviors, the same world, coordinated by a competition; a mixture is coloured "
           "by its largest part.", "simulate", "--poster"),
-    Plate("first_light_journal", "specs/scenarios/first_light.yaml --style journal",
-          "A first scenario, for a journal in grey.", "simulate", "--poster"),
+    Plate("find_light_wiring", "specs/architectures/find_light.yaml",
+          "One arbiter above two behaviors that reach the same two channels.", "wiring"),
+    Plate("first_light", "specs/scenarios/first_light.yaml --seed 9",
+          "A run of it, around a desk to the lamp.", "simulate", "--poster"),
+    Plate("first_light_journal", "specs/scenarios/first_light.yaml --seed 9 --style journal",
+          "The same for a journal in grey.", "simulate", "--poster"),
     Plate("bumping_cart", "specs/scenarios/bumping_cart.yaml",
           "Where only one behavior ever acts, ways are coloured by time. A rectangular robot that "
           "backs up and turns gets stuck (section 2.5 of the thesis).", "simulate", "--poster"),
