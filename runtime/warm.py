@@ -93,7 +93,7 @@ def _senses() -> object:
 def _gap() -> object:
     edges, circles = np.zeros((1, 4)), np.zeros((0, 3))
     far = nearness.gap(edges, circles, edges, circles, np.ones(1, dtype=np.bool_), np.inf)
-    return far, largest(np.zeros((1, 6)))
+    return far, largest(np.zeros((1, 3)))
 
 
 def _tick() -> object:

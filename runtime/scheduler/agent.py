@@ -127,11 +127,12 @@ class Agent:
 
     def _remark(self, instant: int, place: int, channel: Resolver) -> None:
         how = channel.how
-        if how != self._told_how[place]:
+        told = self._told_how[place]
+        if how is not told and how != told:
             self._told_how[place] = how
             self._observer.resolved(instant, self._place, place, how)
-        flags = ((how.is_in_conflict, What.CONFLICT), (how.is_limited, What.LIMITED))
-        self._tell(instant, -1, place, tuple(what for is_so, what in flags if is_so))
+            flags = ((how.is_in_conflict, What.CONFLICT), (how.is_limited, What.LIMITED))
+            self._tell(instant, -1, place, tuple(what for is_so, what in flags if is_so))
 
     def _tell(self, instant: int, node: int, channel: int, remarks: tuple[What, ...]) -> None:
         """Tell what was not so before; what has ended may be told again."""

@@ -51,6 +51,9 @@ class Resolver:
         self.rate = 0.0
         nobody = (0.0,) * len(architecture.nodes)
         self.how = self._resting = Resolved(nobody, is_limited=False, is_in_conflict=False)
+        self._takes_first = self._way in {Way.SINGLE, Way.EXCLUSIVE, Way.PRIORITY}
+        self._must_be_one = self._way in {Way.SINGLE, Way.EXCLUSIVE}
+        self._alone = {member.node: _alone(member.node, nobody) for member in self._members}
 
     def resolve(self, acting: Acting, commands: Sequence[Array]) -> None:
         """Take what the nodes that act want, by the channel's own way.
@@ -67,9 +70,15 @@ class Resolver:
             if self._channel.rest == "stop":
                 self.value = self._limited(0.0)
             return
-        wants = [float(commands[member.node][member.column]) for member in mine]
-        wanted, weights = self._put_together(mine, wants, acting)
-        self._note(mine, weights)
+        if self._takes_first:
+            first = mine[0]
+            wanted = float(commands[first.node][first.column])
+            alone, disputed = self._alone[first.node]
+            self.how = disputed if self._must_be_one and len(mine) > 1 else alone
+        else:
+            wants = [float(commands[member.node][member.column]) for member in mine]
+            wanted, weights = self._put_together(mine, wants, acting)
+            self._note(mine, weights)
         if mine[0].node in self._accelerates:
             self.rate = wanted
         else:
@@ -85,10 +94,6 @@ class Resolver:
     ) -> tuple[float, Sequence[float]]:
         """What they come to, and how much each of them counts."""
         match self._way:
-            case Way.SINGLE | Way.EXCLUSIVE | Way.PRIORITY:
-                return wants[0], (1.0,)
-            case Way.SUM:
-                return math.fsum(wants), (1.0,) * len(mine)
             case Way.BLEND:
                 by = acting.by.get(self._arbiter)
                 weights = [by[member.node] if by else 1.0 for member in mine]
@@ -101,14 +106,15 @@ class Resolver:
                 names = [member.name for member in mine]
                 called = self._called(dict(zip(names, wants, strict=True)))
                 return called, (1.0,) * len(mine)
+            case _:  # a sum; the others take the first
+                return math.fsum(wants), (1.0,) * len(mine)
 
     def _note(self, mine: Sequence[_Member], weights: Sequence[float]) -> None:
-        """Keep how much each counts; those beyond the last weight count nothing."""
+        """Keep how much each counts."""
         counts = [*self._resting.weights]
-        for member, weight in zip(mine, weights, strict=False):
+        for member, weight in zip(mine, weights, strict=True):
             counts[member.node] = weight
-        conflicts = self._way in {Way.EXCLUSIVE, Way.SINGLE} and len(mine) > 1
-        self.how = Resolved(tuple(counts), is_limited=False, is_in_conflict=conflicts)
+        self.how = Resolved(tuple(counts), is_limited=False, is_in_conflict=False)
 
     def _called(self, wants: Mapping[str, float]) -> float:
         assert self._function is not None, "found at the beginning"
@@ -125,6 +131,15 @@ class Resolver:
 
     def _limited(self, wanted: float) -> float:
         return min(max(wanted, self._channel.low), self._channel.high)
+
+
+def _alone(node: int, nobody: tuple[float, ...]) -> tuple[Resolved, Resolved]:
+    """How it is where one node has its way, without and with a conflict."""
+    weights = (*nobody[:node], 1.0, *nobody[node + 1 :])
+    return (
+        Resolved(weights, is_limited=False, is_in_conflict=False),
+        Resolved(weights, is_limited=False, is_in_conflict=True),
+    )
 
 
 def _members(architecture: Architecture, place: int) -> tuple[_Member, ...]:

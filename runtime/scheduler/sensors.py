@@ -123,9 +123,13 @@ class Quality:
                 value += noise * draws[place]
             if step:
                 value = round(value / step) * step
-            values[place] = (
-                low + (value - low) % (high - low) if turns else min(max(value, low), high)
-            )
+            if turns:
+                value = low + (value - low) % (high - low)
+            elif value < low:
+                value = low
+            elif value > high:
+                value = high
+            values[place] = value
         self.last = np.array(values)
         return self.last
 

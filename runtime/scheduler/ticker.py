@@ -126,6 +126,7 @@ def _frame(
     moving = [i for i, name in enumerate(names) if name in program.field.driven]
     own = [i for i, state in enumerate(program.states) if _is_own(program, state)]
     packed = [_packed(command, program) for command in commands]
+    moved = set(program.field.driven) - {program.field.mode}  # a mode only by guards
     return Frame(
         tape=tape,
         rest=rest,
@@ -144,6 +145,8 @@ def _frame(
         outputs=len(program.outputs),
         is_map=int(program.field.is_map),
         looks_ahead=_looks_ahead(packed, own),
+        steady_rates=int(not moved & _read_by(_results(program), program)),
+        steady_guards=int(not moved & _read_by(_guards(program), program)),
         work=_work(tape),
         rest_work=_work(rest),
         room=np.zeros((ROOM, len(names))),
@@ -152,12 +155,34 @@ def _frame(
 
 def _rates(program: Program) -> Tape:
     """What gives the rates of all states; those that are only sensed are held."""
+    results = _results(program)
+    return pack(results, program.register, program.field.tables, program.field.coordinates)
+
+
+def _results(program: Program) -> list[Code | Sum]:
     results: list[Code | Sum] = []
     for index, state in enumerate(program.states):
         still = Code(state.name) if program.field.is_map else Code("0")
         moves = state.name in program.field.driven
         results.append(rate_of(program, index, Source.TABLES) if moves else still)
-    return pack(results, program.register, program.field.tables, program.field.coordinates)
+    return results
+
+
+def _guards(program: Program) -> list[Code | Sum]:
+    return [guard.condition for guard in program.field.guards]
+
+
+def _read_by(results: Sequence[Code | Sum], program: Program) -> set[str]:
+    """The entries of the register that some results are worked out from, tables and all."""
+    codes = [result for result in results if isinstance(result, Code)]
+    for result in results:
+        if isinstance(result, Sum):
+            for code, table, _ in result.parts:
+                axes = program.field.tables[table].axes if table >= 0 else ()
+                codes += [code, *(Code(axis.name) for axis in axes)]
+    behind = {one.name: set(one.code.tokens) for one in program.field.coordinates}
+    names = {token for code in codes for token in code.tokens}
+    return names.union(*(behind.get(name, set()) for name in names))
 
 
 def _rest(program: Program, acts_when: Code) -> tuple[Tape, Integers, Integers]:

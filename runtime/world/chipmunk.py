@@ -37,6 +37,17 @@ def compass(body: pymunk.Body) -> Callable[[float], float]:
     return lambda seconds: heading(raw) + turn(raw) * seconds
 
 
+def finder(body: pymunk.Body) -> Callable[[], tuple[float, float, float]]:
+    """What tells where the origin of a body is, and its heading."""
+    raw, place, heading = body._body, C.cpBodyGetPosition, C.cpBodyGetAngle  # noqa: SLF001
+
+    def find() -> tuple[float, float, float]:
+        at = place(raw)
+        return at.x, at.y, heading(raw)
+
+    return find
+
+
 @final
 class Bodies:
     """Some numbers of every body of a space, in its own order, which changes."""

@@ -34,6 +34,7 @@ BODY: Final = (
     | BodyFields.VELOCITY
     | BodyFields.ANGULAR_VELOCITY
 )
+SPEEDS: Final = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 DEPTHS: Final = ArbiterFields.DISTANCE_1 | ArbiterFields.DISTANCE_2
 CONTACT: Final = (
     ArbiterFields.BODY_A_ID
@@ -101,8 +102,8 @@ class Space:
         self._numbers[self.space.static_body.id] = len(self.bodies)
         self._step = stepper(self.space)
         self._all = Bodies(self.space, BODY, 6)
-        self._found: Array | None = None
-        self._largest = machine_code(largest, (self._all.read(),))
+        self._speeds = Bodies(self.space, SPEEDS, 3)
+        self._largest = machine_code(largest, (self._speeds.read(),))
         self._depths = Contacts(self.space, DEPTHS)
         self._contacts = Contacts(self.space, CONTACT)
         self._arm = max((_arm(solid) for solid in solids if solid.mass is not None), default=0.0)
@@ -111,7 +112,7 @@ class Space:
 
     def states(self) -> Array:
         """Of all solids (n, 6): x, y, heading; velocity of the centre of mass x, y; turn rate."""
-        found = self._read()
+        found = self._all.read()
         order = self._all.order()
         if order != self._order:
             self._sort(order)
@@ -124,13 +125,12 @@ class Space:
         -inf where none touch.
         """
         self._step(seconds)
-        self._found = None
         # A pair that touches at one point has 0 for the other, which is less deep than the skin.
         return -min(self._depths.read(), default=math.inf) - SLOP
 
     def fastest(self) -> float:
         """A speed that no point of a body exceeds now (m/s)."""
-        x, y, turn = self._largest(self._read())
+        x, y, turn = self._largest(self._speeds.read())
         return math.hypot(x, y) + turn * self._arm
 
     def touches(self) -> list[Touch]:
@@ -141,21 +141,17 @@ class Space:
         whole, numbers = self._contacts.whole(), self._numbers
         found = []
         for row in range(len(real) // REAL):
-            first, second, count = whole[WHOLE * row : WHOLE * (row + 1)]
-            push_x, push_y, *points = real[REAL * row : REAL * (row + 1)]
-            a, b = sorted((numbers[first], numbers[second]))
-            impulse = math.hypot(push_x, push_y)
-            for k in range(count):
-                x, y, distance = points[3 * k : 3 * (k + 1)]
-                found.append(Touch(a, b, x, y, impulse, -distance - SLOP))
+            at, of = REAL * row, WHOLE * row
+            a, b = numbers[whole[of]], numbers[whole[of + 1]]
+            if a > b:
+                a, b = b, a
+            impulse = math.hypot(real[at], real[at + 1])
+            found += [
+                Touch(a, b, real[k], real[k + 1], impulse, -real[k + 2] - SLOP)
+                for k in range(at + 2, at + 2 + 3 * whole[of + 2], 3)
+            ]
         # The physics keeps contacts by addresses, which differ from process to process.
         return sorted(found)
-
-    def _read(self) -> Array:
-        """What the physics tells of all bodies, in its own order; read once after a step."""
-        if self._found is None:
-            self._found = self._all.read()
-        return self._found
 
     def _sort(self, order: bytes) -> None:
         """Note which row of a batch is which solid; they change as bodies fall asleep."""

@@ -16,6 +16,7 @@ import numpy as np
 from runtime.arrays import Array, Booleans
 from runtime.direct_calls import machine_code
 from runtime.world.audit import Audit, Auditor
+from runtime.world.chipmunk import finder
 from runtime.world.drive import CHANNELS, Motor, drive_of, local_velocity
 from runtime.world.floor import FEET, Feet, feet_of, stand
 from runtime.world.footprint import spread
@@ -136,6 +137,7 @@ class SimulatedWorld:
             (motor.ramps, _arm(robot.body))
             for motor, robot in zip(self._motors, self.inhabitants, strict=True)
         )
+        self._find = tuple(finder(body) for body in self._space.bodies[len(self.layout.things) :])
         self._restless = 0.0
         self._ways = tuple(_ways(robot) for robot in self.inhabitants)
         self._steps = 0
@@ -225,8 +227,7 @@ class SimulatedWorld:
         ours = [touch for touch in self._touches if owner in (touch.a, touch.b)]
         if not ours:
             return ()
-        body = self._space.bodies[owner]
-        (x, y), heading = body.position, body.angle
+        x, y, heading = self._find[robot]()
         found = []
         for touch in ours:
             bearing = math.remainder(math.atan2(touch.y - y, touch.x - x) - heading, math.tau)

@@ -19,6 +19,7 @@ from runtime.kernels.machine import run
 from runtime.kernels.tape import Tape
 
 PARTS: Final = 8
+STAGES: Final = 4
 HALVINGS: Final = 50
 MOST_SWITCHES: Final = 50
 """Switches of mode in one tick; more have no end."""
@@ -54,7 +55,8 @@ class Frame(NamedTuple):
     entry or output; signs: (c,).
     period: seconds. mode: the state that holds it, or -1. outputs: how many. is_map: 0 or 1.
     looks_ahead: what is taken from the state one period on: `NOTHING`, own states where it has its
-    way (`OWN`), or commands too (`COMMANDS`).
+    way (`OWN`), or commands too (`COMMANDS`). steady_rates, steady_guards: 1 where no rate, or no
+    guard, reads a state that moves: they are then all along what they were at the sample.
     work, rest_work: the rows of both tapes, literals in place. room: (9, n).
     """
 
@@ -75,6 +77,8 @@ class Frame(NamedTuple):
     outputs: int
     is_map: int
     looks_ahead: int
+    steady_rates: int
+    steady_guards: int
     work: Array
     rest_work: Array
     room: Array
@@ -229,15 +233,19 @@ def _ahead(frame: Frame, x: Array, new: Array, commits: int, settled: int) -> in
     h = frame.period / PARTS
     here = frame.room[4]
     guarded = commits == 1 and frame.mode >= 0 and settled & CHATTERS == 0
+    guarded = guarded and frame.steady_guards == 0  # those that stand open were taken already
+    known = STAGES if frame.steady_rates == 1 else 1
     flags = 0
-    for number in range(PARTS):
+    for _ in range(PARTS):
         for i in range(x.shape[0]):
             here[i] = new[i]
-        _step(frame, here, h, new, int(number == 0))
+        _step(frame, here, h, new, known)
+        known = STAGES if known == STAGES else 0
         if guarded:
             _look(frame, new)
             if _open_guard(frame, new) >= 0:
                 flags |= _through_guards(frame, here, h, new)
+                known = 0
                 # What switches without end goes on in the mode that it came to.
                 guarded = flags & CHATTERS == 0
     return flags
@@ -245,14 +253,14 @@ def _ahead(frame: Frame, x: Array, new: Array, commits: int, settled: int) -> in
 
 @part
 def _step(frame: Frame, x: Array, h: float, new: Array, known: int) -> None:
-    """From x to new, `h` later; known: whether row 2 of the room has the rates in x already."""
+    """From x to new, `h` later; known: of how many stages row 2 of the room has the rates."""
     total, stage_x = frame.room[3], frame.room[7]
     rates = frame.room[8]
     for i in range(x.shape[0]):
         total[i] = 0.0
         stage_x[i] = x[i]
-    for stage in range(4):
-        if stage == 0 and known == 1:
+    for stage in range(STAGES):
+        if stage < known:
             for i in range(x.shape[0]):
                 rates[i] = frame.room[2, i]
         else:

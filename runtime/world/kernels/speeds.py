@@ -5,11 +5,11 @@ from runtime.world.kernels.cache import kernel
 
 
 @kernel
-def largest(states: Array) -> tuple[float, float, float]:
-    """The largest amounts of the last three columns (x, y, turn) of states (n, 6), each alone."""
+def largest(speeds: Array) -> tuple[float, float, float]:
+    """The largest amount of each column (x, y, turn) of speeds (n, 3), each alone."""
     x = y = turn = 0.0
-    for row in range(len(states)):
-        x = max(x, abs(states[row, 3]))
-        y = max(y, abs(states[row, 4]))
-        turn = max(turn, abs(states[row, 5]))
+    for row in range(len(speeds)):
+        x = max(x, abs(speeds[row, 0]))
+        y = max(y, abs(speeds[row, 1]))
+        turn = max(turn, abs(speeds[row, 2]))
     return x, y, turn

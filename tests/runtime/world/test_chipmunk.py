@@ -7,7 +7,7 @@ import pymunk
 import pytest
 from pymunk.batch import ArbiterFields, BodyFields
 
-from runtime.world.chipmunk import Bodies, Contacts, aimer, compass, stepper
+from runtime.world.chipmunk import Bodies, Contacts, aimer, compass, finder, stepper
 
 
 def pile(count: int) -> tuple[pymunk.Space, list[pymunk.Body]]:
@@ -49,6 +49,19 @@ def test_a_velocity_is_set_and_a_heading_foreseen() -> None:
     foreseen = compass(body)(0.25)
     space.step(0.25)
     assert foreseen == pytest.approx(body.angle, abs=1e-15)
+
+
+def test_a_body_is_found_where_it_is() -> None:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    body.center_of_gravity = (0.1, 0.2)
+    body.angle, body.position, body.velocity = 0.7, (1.0, -2.0), (3.0, 4.0)
+    space.add(body)
+    find = finder(body)
+
+    for _ in range(2):
+        assert find() == (*body.position, body.angle)
+        space.step(0.25)
 
 
 @pytest.mark.parametrize("count", [1, 3, 40])
