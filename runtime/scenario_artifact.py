@@ -16,6 +16,7 @@ from runtime.document import Document
 from runtime.scenario import Robot, Scenario, Start
 from runtime.scheduler.clock import whole_steps
 from runtime.tape import check_code
+from runtime.world.heights import BITS, ranges_of
 
 
 @final
@@ -99,6 +100,20 @@ def _faults(scenario: Scenario) -> Iterator[str]:
     if not (scenario.step > 0.0 and scenario.duration > 0.0):
         yield "it has no step or no duration"
         return
+    if ranges_of(_heights(scenario)) > BITS:
+        yield "it has more ranges of height than the physics tells apart"
+    yield from _faults_of_times(scenario)
+    yield from _faults_of_requirements(scenario)
+
+
+def _heights(scenario: Scenario) -> list[tuple[float, float]]:
+    """From where to where all that stands in it reaches."""
+    scattered = [(s.prototype.low, s.prototype.high) for s in scenario.world.scattered]
+    bodies = [(robot.body.low, robot.body.high) for robot in scenario.robots]
+    return [*((thing.low, thing.high) for thing in scenario.world.things), *scattered, *bodies]
+
+
+def _faults_of_times(scenario: Scenario) -> Iterator[str]:
     for robot in scenario.robots:
         times = [time for s in robot.body.sensors for time in (s.every, s.latency)]
         times += [t for n in robot.architecture.nodes for t in (n.period, n.response_time)]
@@ -107,6 +122,9 @@ def _faults(scenario: Scenario) -> Iterator[str]:
                 whole_steps(time, scenario.step)
         except ValueError as problem:
             yield f"of {robot.name} {problem}"
+
+
+def _faults_of_requirements(scenario: Scenario) -> Iterator[str]:
     for requirement in scenario.requirements:
         for part in requirement.formula:
             try:

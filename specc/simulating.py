@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeAlias, final
 
 from runtime.run import Run, Seen, run
+from runtime.run_size import MOST, bytes_of, gigabytes
 from runtime.scenario import Scenario
 from runtime.scheduler.observer import Observer
 from runtime.user_code import UserCodeError
@@ -68,6 +69,7 @@ def simulate_scenario(
         scenario = dataclasses.replace(scenario, seed=seed)
     if duration is not None:
         scenario = dataclasses.replace(scenario, duration=whole(seconds(duration), scenario.step))
+    _refuse_too_large(scenario, light_every)
     try:
         made = run(
             scenario,
@@ -94,6 +96,21 @@ def required_of(made: Run) -> tuple[RequirementResult, ...]:
 def whole(duration: float, step: float) -> float:
     """A duration as the nearest whole number of steps, and one at least."""
     return max(round(duration / step), 1) * step
+
+
+def _refuse_too_large(scenario: Scenario, light_every: float | None) -> None:
+    """Refuse a run that takes more memory than it may, before it begins (V383)."""
+    takes = bytes_of(scenario, light_every)
+    if takes <= MOST:
+        return
+    message = (
+        f"a run of {scenario.duration:.12g} s takes about {gigabytes(takes)} of memory, "
+        f"of which {gigabytes(MOST)} are allowed"
+    )
+    remedy = "take a shorter --duration"
+    if bytes_of(scenario) <= MOST / 2.0:
+        remedy += ", or a smaller arena: most of it is the light on its floor"
+    raise fault("V383", scenario.source.file, message, remedy)
 
 
 def _no_room(scenario: Scenario, error: NoRoomError) -> SpecError:

@@ -14,6 +14,7 @@ from compiler.requirement import lower_requirement
 from compiler.world.meeting import check_sights, check_starts
 from compiler.world.quantities_of_run import quantities_of
 from compiler.world.shapes import pose_of, positive
+from compiler.world.size import check_heights_with, is_small_enough
 from compiler.world.starts import beginnings_of
 from compiler.world.world import lower_world
 from runtime.requirement import Requirement
@@ -69,6 +70,7 @@ def compile_parts_of_scenario(
     if world is not None:
         check_starts(world, robots.found, findings)
         check_sights(world, robots.found, findings)
+        check_heights_with(world, robots.found, findings)
     requirements = _requirements(spec, world, robots, findings)
     if world is None or not robots.is_whole or findings.has_errors:
         return None
@@ -84,6 +86,8 @@ def compile_parts_of_scenario(
         requirements=requirements,
         source=origin_of(loaded),
     )
+    if not is_small_enough(scenario, findings):
+        return None
     warnings = (*findings.diagnostics, *robots.warnings)
     return CompiledScenario(scenario, warnings, (*findings.notes, *robots.notes))
 

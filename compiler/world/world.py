@@ -18,6 +18,7 @@ from compiler.world.shapes import (
     positive,
     shape_of,
 )
+from compiler.world.size import check_heights
 from runtime.world.model import Light, Pose, Scatter, Thing, World
 from spec_schema.load import Loaded
 from spec_schema.places import Path
@@ -52,6 +53,7 @@ def lower_world(spec: WorldSpec, loaded: Loaded, findings: Findings) -> World:
     )
     if not findings.has_errors:
         check_inside(world, findings)
+        check_heights(world, findings)
     return world
 
 

@@ -36,6 +36,11 @@ def bands(heights: Sequence[tuple[float, float]]) -> tuple[int, ...]:
     )
 
 
+def ranges_of(heights: Sequence[tuple[float, float]]) -> int:
+    """How many bits they need."""
+    return len(_largest(heights))
+
+
 def _largest(heights: Sequence[tuple[float, float]]) -> list[frozenset[int]]:
     """The largest sets that all overlap, from the lowest up; indices of `heights`."""
     found: list[frozenset[int]] = []

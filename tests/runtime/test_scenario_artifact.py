@@ -34,6 +34,18 @@ def test_compiled_again_it_has_the_same_bytes(data: bytes) -> None:
     assert is_scenario(data)
 
 
+def test_more_heights_than_can_be_told_apart_are_refused() -> None:
+    made = whole()
+    thing = made.world.things[0]
+    stairs = tuple(
+        dataclasses.replace(thing, name=f"s{i}", low=2.0 * i, high=2.0 * i + 1.0) for i in range(33)
+    )
+    world = dataclasses.replace(made.world, things=stairs)
+
+    with pytest.raises(ArtifactError, match="more ranges of height"):
+        to_bytes(dataclasses.replace(made, world=world))
+
+
 def test_two_robots_share_one_architecture() -> None:
     (robot,) = whole().robots
     two = dataclasses.replace(whole(), robots=(robot, dataclasses.replace(robot, name="s")))

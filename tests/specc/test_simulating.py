@@ -1,5 +1,6 @@
 """`specc simulate` of a scenario as a user runs it: statuses, what is printed, files."""
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -146,3 +147,22 @@ def test_requirements_of_a_run_are_judged_from_python() -> None:
 
 def test_a_mistake_in_the_scenario_is_a_bad_spec(scenario: Path) -> None:
     assert main(["simulate", require(scenario, "always r.nothing > 0")]) == 2
+
+
+def test_a_run_that_takes_too_much_memory_is_refused_before_it_begins() -> None:
+    with pytest.raises(SpecError) as caught:
+        simulate_scenario(first_light(), duration="1e9 s")
+
+    assert [each.code for each in caught.value.diagnostics] == ["V383"]
+    assert "of which 4 GB are allowed" in caught.value.diagnostics[0].message
+
+
+def test_a_picture_of_the_light_on_an_endless_floor_is_refused() -> None:
+    made = first_light(10.0)
+    far = ((0.0, 0.0), (9e3, 0.0), (9e3, 9e3), (0.0, 9e3))
+    vast = dataclasses.replace(made, world=dataclasses.replace(made.world, arena=far))
+
+    with pytest.raises(SpecError) as caught:
+        simulate_scenario(vast, light_every=1.0)
+
+    assert "a smaller arena" in caught.value.diagnostics[0].help
