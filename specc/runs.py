@@ -68,37 +68,61 @@ def verify_each(
     named = spec if spec is None or isinstance(spec, Program) else Path(spec)
     if isinstance(named, Path) and not is_of_runs(named):
         program_of(named)
+    how = _How(named, clock, program_of, allow_code, strict, only_verdict, reading)
     for trace in traces:
         tell = None if progress is None else partial(progress, str(trace))
         try:
-            carried = carried_by(Path(trace))
-            if carried is None:
-                yield verify_by(
-                    Path(trace),
-                    spec,
-                    clock,
-                    program_of,
-                    strict=strict,
-                    only_verdict=only_verdict,
-                    progress=tell,
-                    reading=reading,
-                )
-                continue
-            run = verify_carried(
-                Path(trace),
-                carried,
-                named,
-                program_of,
-                allow_code=allow_code,
-                strict=strict,
-                only_verdict=only_verdict,
-                progress=tell,
-                reading=reading,
-            )
-            yield from run.judged
-            yield from run.not_judged
+            yield from _judged(Path(trace), how, tell)
         except SpecError as error:
             yield Unusable(str(trace), error)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _How:
+    """How each of many recordings is judged: see `verify_each`."""
+
+    spec: Path | Program | None
+    clock: Clock
+    program_of: Callable[[Path], Program | Arbiter]
+    allow_code: bool
+    strict: bool
+    only_verdict: bool
+    reading: Progress | None
+
+
+def _judged(trace: Path, how: _How, tell: Callable[[str], None] | None) -> Iterator[Outcome]:
+    """The outcomes of one recording.
+
+    Raises:
+        SpecError: it or its spec can't be used.
+    """
+    carried = carried_by(trace)
+    if carried is None:
+        yield verify_by(
+            trace,
+            how.spec,
+            how.clock,
+            how.program_of,
+            strict=how.strict,
+            only_verdict=how.only_verdict,
+            progress=tell,
+            reading=how.reading,
+        )
+        return
+    run = verify_carried(
+        trace,
+        carried,
+        how.spec,
+        how.program_of,
+        allow_code=how.allow_code,
+        strict=how.strict,
+        only_verdict=how.only_verdict,
+        progress=tell,
+        reading=how.reading,
+    )
+    yield from run.judged
+    yield from run.not_judged
 
 
 def verifications(outcomes: Sequence[Outcome]) -> tuple[Verification, ...]:
@@ -225,24 +249,68 @@ def _together(members: Sequence[Verification]) -> Examination:
     return Examination(report, origins=members[0].examination.origins)
 
 
-def counted(outcomes: Sequence[Outcome]) -> str:
-    """`5 recordings: 1 fail, 3 pass, 1 can't be used`; nodes of a scenario's are counted, too."""
-    found = [each.report.verdict for each in verifications(outcomes)]
+def failing(pool: Pool) -> tuple[Verification, ...]:
+    """The recordings that fail by themselves."""
+    return tuple(each for each in pool.members if each.report.verdict is Verdict.FAIL)
+
+
+def decided(pool: Pool) -> Verdict:
+    """FAIL where one recording fails by itself, else the verdict on all together."""
+    return Verdict.FAIL if failing(pool) else pool.report.verdict
+
+
+def counted(runs: Runs) -> str:
+    """`5 recordings: 1 fail, 3 pass, 1 can't be used`.
+
+    What scenarios require, and a node of theirs, counts once for all recordings of it.
+    """
+    found = [*_verdicts(runs)]
     parts = [f"{found.count(v)} {v}" for v in WORST_FIRST if v in found]
-    lost, skipped = len(unusable(outcomes)), len(not_judged(outcomes))
+    lost, skipped = len(unusable(runs.outcomes)), len(_unjudged_parts(runs))
     parts += [f"{skipped} not judged"] if skipped else []
     parts += [f"{lost} can't be used"] if lost else []
-    return f"{_things(outcomes)}: {', '.join(parts) or 'none judged'}"
+    return f"{_things(runs)}: {', '.join(parts) or 'none judged'}"
 
 
-def _things(outcomes: Sequence[Outcome]) -> str:
+def _verdicts(runs: Runs) -> Iterator[Verdict]:
+    """Of each recording by itself; of a scenario's requirements and nodes of all together."""
+    pooled = {each for pool in runs.pools if pool.members[0].part for each in pool.members}
+    required: dict[str, set[Verdict]] = {}
+    for each in verifications(runs.outcomes):
+        if each.part == REQUIREMENTS:
+            required.setdefault(each.report.spec.name, set()).add(each.report.verdict)
+        elif each not in pooled:
+            yield each.report.verdict
+    yield from (next(v for v in WORST_FIRST if v in found) for found in required.values())
+    yield from (decided(pool) for pool in runs.pools if pool.members[0].part)
+
+
+def _unjudged_parts(runs: Runs) -> set[tuple[str, str]]:
+    """Nodes of which nothing can be said, and why."""
+    return {
+        (each.source.removeprefix(recording_of(each)), each.why)
+        for each in not_judged(runs.outcomes)
+    }
+
+
+def _things(runs: Runs) -> str:
     """`5 recordings`; of scenarios' `requirements and 4 nodes of 1 recording`."""
-    parts = [each.part for each in verifications(outcomes) if each.part]
-    nodes = len(parts) - parts.count(REQUIREMENTS) + len(not_judged(outcomes))
-    told = ["requirements"] if REQUIREMENTS in parts else []
+    every = [each for each in verifications(runs.outcomes) if each.part]
+    pools = [pool for pool in runs.pools if pool.members[0].part]
+    saved = sum(len(pool.members) - 1 for pool in pools)
+    has_required = any(each.part == REQUIREMENTS for each in every)
+    nodes = sum(each.part != REQUIREMENTS for each in every) - saved + len(_unjudged_parts(runs))
+    told = ["requirements"] if has_required else []
     told += [_plural(nodes, "node")] if nodes else []
-    recordings = _plural(len({recording_of(each) for each in outcomes}), "recording")
-    return f"{listed(told)} of {recordings}" if told else recordings
+    recordings = _plural(len({recording_of(each) for each in runs.outcomes}), "recording")
+    if not told:
+        return recordings
+    return f"{listed(told)} {'of' if is_of_one(runs.outcomes) else 'in'} {recordings}"
+
+
+def is_of_one(outcomes: Sequence[Outcome]) -> bool:
+    """Whether all is about one recording, whose name need not be said."""
+    return len({recording_of(each) for each in outcomes}) == 1
 
 
 def recording_of(outcome: Outcome) -> str:

@@ -34,10 +34,10 @@ def gathered_runs(runs: Runs) -> RunsPage:
     pages = [(anchors[id(e)], _pool_page(e, anchors[id(e)])) for e in runs.pools]
     pages += [(anchors[id(each)], _page(each, anchors[id(each)], outcomes)) for each in found]
     return RunsPage(
-        title=counted(outcomes),
+        title=counted(runs),
         verdict="unusable" if worst is None else str(worst),
         sign="!" if worst is None else SIGNS[worst],
-        headline=counted(outcomes),
+        headline=counted(runs),
         reasons=top_reasons(runs),
         advice=top_advice(runs),
         tables=(*scenario_tables(runs, anchors), *_plain(runs, anchors)),
@@ -71,7 +71,7 @@ def top_reasons(runs: Runs) -> tuple[str, ...]:
     What decides comes first.
     """
     together = [f"{_told(pool)}: {reason}" for pool in runs.pools for reason in pool.report.reasons]
-    own = reasons_of(runs.outcomes)
+    own = reasons_of(runs)
     is_by_one = runs.verdict is None or runs.verdict is Verdict.FAIL
     return ((*own, *together) if is_by_one else (*together, *own))[:MOST]
 

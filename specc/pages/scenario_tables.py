@@ -5,13 +5,16 @@ from typing import Final
 
 from specc.pages.page import RunRow, RunsTable
 from specc.pages.report_page import SIGNS
-from specc.runs import Pool, Runs, recording_of
+from specc.runs import Pool, Runs, decided, is_of_one
 from specc.texts.scenario_runs import (
     NODE_TITLES,
+    RequirementRow,
     node_row,
     nodes_of,
     pool_row,
+    pools_of_nodes,
     required_of,
+    requirement_rows,
 )
 from specc.verifying import Verification
 from specc.verifying_architecture import NotJudged
@@ -37,25 +40,35 @@ REQUIRED: Final = "A requirement is judged on the whole run; one that is open ne
 
 def scenario_tables(runs: Runs, anchors: dict[int, str]) -> Iterator[RunsTable]:
     """Both, where there is something to say. anchors: of pages, by the id of what is on them."""
-    is_one = len({recording_of(each) for each in runs.outcomes}) == 1
-    required = [*_required(runs, anchors, is_one=is_one)]
+    is_one = is_of_one(runs.outcomes)
+    required = [*_required(runs, anchors)]
     if required:
-        columns = ("what decides",) if is_one else ("recording", "what decides")
+        columns = ("what decides",) if is_one else ("in", "what decides")
         yield RunsTable("Requirements", "required", columns, tuple(required), REQUIRED, words=True)
-    nodes = [_node(each, anchors, is_one=is_one) for each in nodes_of(runs.outcomes)]
-    nodes += [_pool(pool, anchors[id(pool)]) for pool in runs.pools if pool.members[0].part]
+    nodes = [_pool(pool, anchors[id(pool)]) for pool in pools_of_nodes(runs)]
+    nodes += [_node(each, anchors, is_one=is_one) for each in nodes_of(runs.outcomes)]
     if nodes:
         titles = (NODE_TITLES[1], *NODE_TITLES[3:])
         yield RunsTable("Nodes", "node", titles, tuple(nodes), NODES, words=True)
 
 
-def _required(runs: Runs, anchors: dict[int, str], *, is_one: bool) -> Iterator[RunRow]:
-    for each in required_of(runs.outcomes):
-        for result in each.examination.requirements:
-            verdict = VERDICTS[result.outcome]
-            decides = (result.sentence, STANDINGS[verdict])
-            cells = (decides,) if is_one else ((recording_of(each), ""), decides)
-            yield RunRow(anchors[id(each)], result.text, str(verdict), SIGNS[verdict], cells, "")
+def _required(runs: Runs, anchors: dict[int, str]) -> Iterator[RunRow]:
+    every = required_of(runs.outcomes)
+    for row in requirement_rows(every):
+        verdict = VERDICTS[row.outcome]
+        decides = ("; ".join(row.told), STANDINGS[verdict])
+        is_one = is_of_one(runs.outcomes)
+        cells = (decides,) if is_one else ((row.count, ""), decides)
+        worst = next(each for each in every if _has(each, row))
+        yield RunRow(anchors[id(worst)], row.text, str(verdict), SIGNS[verdict], cells, "")
+
+
+def _has(each: Verification, row: RequirementRow) -> bool:
+    """Whether the row's outcome is in this recording."""
+    return any(
+        result.outcome is row.outcome and row.text.endswith(result.text)
+        for result in each.examination.requirements
+    )
 
 
 def _node(each: Verification | NotJudged, anchors: dict[int, str], *, is_one: bool) -> RunRow:
@@ -67,7 +80,7 @@ def _node(each: Verification | NotJudged, anchors: dict[int, str], *, is_one: bo
 
 def _pool(pool: Pool, anchor: str) -> RunRow:
     name, spec, _, judged, found = pool_row(pool)
-    return _linked(anchor, name, pool.report.verdict, (spec, judged, found))
+    return _linked(anchor, name, decided(pool), (spec, judged, found))
 
 
 def _linked(anchor: str, name: str, verdict: Verdict, told: tuple[str, str, str]) -> RunRow:

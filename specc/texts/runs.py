@@ -9,7 +9,7 @@ from specc.runs import (
     Runs,
     Unusable,
     counted,
-    recording_of,
+    is_of_one,
     source_of,
     unusable,
     verifications,
@@ -17,9 +17,10 @@ from specc.runs import (
 from specc.texts.scenario_runs import (
     NODE_TITLES,
     REQUIREMENT_TITLES,
-    node_row,
+    RequirementRow,
+    node_rows,
     nodes_of,
-    pool_row,
+    pools_of_nodes,
     required_of,
     requirement_rows,
 )
@@ -30,19 +31,24 @@ from verifier.report.layout import bullets, section, table, wrapped
 from verifier.report.report import Report, Verdict
 from verifier.report.wording import percent, seconds, shown
 
+BY_ITSELF = (
+    "Each recording by itself: `--format json`, or `-o report.html`. A node FAILs where it fails"
+    " in one recording, else it has the verdict on all together."
+)
+
 
 def runs_table(runs: Runs) -> str:
     """A row for each recording and for all together, the reasons, the verdict and the counts.
 
     Of recordings of scenarios a row for each requirement and for each node.
     """
-    last = f"{'' if runs.verdict is None else f'{runs.verdict.upper()}  '}{counted(runs.outcomes)}"
+    last = f"{'' if runs.verdict is None else f'{runs.verdict.upper()}  '}{counted(runs)}"
     return "\n\n".join(
         part
         for part in (
             *_scenarios(runs),
             _plain(runs),
-            section("why", [wrapped(reason) for reason in reasons_of(runs.outcomes)]),
+            section("why", [wrapped(reason) for reason in reasons_of(runs)]),
             section("next", [bullets(_advice(runs))]),
             *(section(title, blocks) for title, blocks in _together(runs)),
             last,
@@ -65,16 +71,21 @@ def _plain(runs: Runs) -> str:
 
 def _scenarios(runs: Runs) -> Iterator[str]:
     """What scenarios require, and their nodes."""
-    is_one = len({recording_of(each) for each in runs.outcomes}) == 1
-    required, nodes = required_of(runs.outcomes), nodes_of(runs.outcomes)
+    required = [*requirement_rows(required_of(runs.outcomes))]
     if required:
-        rows = [*requirement_rows(required, is_one=is_one)]
-        titles = REQUIREMENT_TITLES if is_one else ("recording", *REQUIREMENT_TITLES)
-        yield table([titles, *rows])
+        rows = [line for each in required for line in _lines(each)]
+        yield table([REQUIREMENT_TITLES, *rows])
+    nodes = [*node_rows(runs)]
     if nodes:
-        rows = [node_row(each, is_one=is_one) for each in nodes]
-        rows += [pool_row(pool) for pool in runs.pools if pool.members[0].part]
-        yield table([NODE_TITLES, *rows])
+        yield table([NODE_TITLES, *nodes])
+    if pools_of_nodes(runs):
+        yield wrapped(BY_ITSELF, "")
+
+
+def _lines(row: RequirementRow) -> list[tuple[str, ...]]:
+    """One line for each recording that is told of it."""
+    first, *others = row.told
+    return [(row.text, row.count, first), *(("", "", each) for each in others)]
 
 
 def _advice(runs: Runs) -> tuple[str, ...]:
@@ -122,6 +133,7 @@ def _together(runs: Runs) -> list[tuple[str, list[str]]]:
             [*map(wrapped, pool.report.reasons), bullets(advice_of(pool))],
         )
         for pool in runs.pools
+        if not pool.members[0].part or pool.report.verdict is not Verdict.PASS
     ]
 
 
@@ -131,11 +143,24 @@ def advice_of(pool: Pool) -> tuple[str, ...]:
     return () if fails and pool.report.verdict is not Verdict.FAIL else pool.report.advice
 
 
-def reasons_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
-    """Why each recording that did not pass did not: `run.mcap, FAIL: …`, what decides first."""
-    told = sorted((each for each in outcomes if _why(each)), key=_rank)
-    is_one = len({recording_of(each) for each in outcomes}) == 1
-    return tuple(f"{_name(each, is_one=is_one)}{_word(each)}: {_why(each)}" for each in told)
+def reasons_of(runs: Runs) -> tuple[str, ...]:
+    """Why each recording that did not pass did not: `run.mcap, FAIL: …`, what decides first.
+
+    Of a node that several recordings are judged of together only those that fail by themselves.
+    """
+    settled = {
+        each
+        for pool in pools_of_nodes(runs)
+        for each in pool.members
+        if each.report.verdict is not Verdict.FAIL
+    }
+    open_ones = [each for each in runs.outcomes if each not in settled and _why(each)]
+    is_one = is_of_one(runs.outcomes)
+    told = [
+        f"{_name(each, is_one=is_one)}{_word(each)}: {_why(each)}"
+        for each in sorted(open_ones, key=_rank)
+    ]
+    return tuple(told)
 
 
 def _name(outcome: Outcome, *, is_one: bool) -> str:

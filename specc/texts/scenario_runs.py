@@ -1,22 +1,39 @@
 """Recordings of scenarios as text: what is required of them, and a row for each node."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, final
 
-from specc.runs import Outcome, Pool, recording_of, verifications
+from specc.runs import Outcome as Judged
+from specc.runs import (
+    Pool,
+    Runs,
+    decided,
+    failing,
+    is_of_one,
+    not_judged,
+    recording_of,
+    verifications,
+)
 from specc.verifying import Verification
 from specc.verifying_architecture import NotJudged
 from specc.verifying_recording import REQUIREMENTS
 from verifier.report.examination import Examination
 from verifier.report.report import Standing, Verdict
+from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.wording import quantity, seconds
 
 NODE_TITLES = ("node", "spec", "verdict", "judged", "what was found")
 REQUIREMENT_TITLES = ("required", "outcome", "what decides")
 STANDINGS = (Standing.EXCEEDED, Standing.UNDECIDED, Standing.WITHIN)
 """The worst first."""
+OUTCOMES: Final = (Outcome.VIOLATED, Outcome.OPEN, Outcome.SATISFIED)
+"""The worst first."""
+MOST_TOLD: Final = 5
+"""In so many recordings it is told what a requirement makes violated, or open."""
 
 
-def nodes_of(outcomes: Sequence[Outcome]) -> tuple[Verification | NotJudged, ...]:
+def nodes_of(outcomes: Sequence[Judged]) -> tuple[Verification | NotJudged, ...]:
     """The nodes of recordings of scenarios."""
     return tuple(
         each
@@ -26,7 +43,7 @@ def nodes_of(outcomes: Sequence[Outcome]) -> tuple[Verification | NotJudged, ...
     )
 
 
-def required_of(outcomes: Sequence[Outcome]) -> tuple[Verification, ...]:
+def required_of(outcomes: Sequence[Judged]) -> tuple[Verification, ...]:
     """What recordings of scenarios show of their requirements."""
     return tuple(each for each in verifications(outcomes) if each.part == REQUIREMENTS)
 
@@ -45,12 +62,48 @@ def node_row(each: Verification | NotJudged, *, is_one: bool) -> tuple[str, ...]
     return (name, report.spec.name, report.verdict.upper(), judged, found_in(each.examination))
 
 
+def node_rows(runs: Runs) -> Iterator[tuple[str, ...]]:
+    """Every node; one of several recordings by all together, and those that fail by themselves."""
+    is_one, members = is_of_one(runs.outcomes), runs.members
+    for pool in pools_of_nodes(runs):
+        yield pool_row(pool)
+        yield from (
+            (f"  {recording_of(each)}", *node_row(each, is_one=False)[1:]) for each in failing(pool)
+        )
+    alone = [each for each in nodes_of(runs.outcomes) if each not in members]
+    judged = [each for each in alone if isinstance(each, Verification)]
+    yield from (node_row(each, is_one=is_one) for each in judged)
+    yield from _unjudged_rows(not_judged(alone), is_one=is_one)
+
+
+def _unjudged_rows(every: Sequence[NotJudged], *, is_one: bool) -> Iterator[tuple[str, ...]]:
+    """A row for each node and reason, however many recordings have it."""
+    alike: dict[tuple[str, str], list[NotJudged]] = {}
+    for each in every:
+        part = each.source.removeprefix(f"{recording_of(each)}: ")
+        alike.setdefault((part, each.why), []).append(each)
+    for (part, why), found in alike.items():
+        if len(found) == 1:
+            yield node_row(found[0], is_one=is_one)
+        else:
+            yield (part, "", "-", f"{len(found)} recordings", why)
+
+
+def pools_of_nodes(runs: Runs) -> tuple[Pool, ...]:
+    """What several recordings of scenarios say together, of each node."""
+    return tuple(pool for pool in runs.pools if pool.members[0].part)
+
+
 def pool_row(pool: Pool) -> tuple[str, ...]:
     """A node in several recordings together."""
-    report = pool.report
-    judged = f"{seconds(report.trace.judged)} of {seconds(report.trace.duration)}"
-    what = found_in(pool.examination)
-    return (report.trace.source, report.spec.name, report.verdict.upper(), judged, what)
+    trace, members = pool.report.trace, len(pool.members)
+    counted = trace.source.partition(" together")[0]
+    judged = f"{seconds(trace.judged)} of {seconds(trace.duration)}, {counted}"
+    found, fails = found_in(pool.examination), len(failing(pool))
+    if fails and pool.report.verdict is not Verdict.FAIL:
+        found = f"{fails} of {members} fail by themselves; together: {found}"
+    name = pool.members[0].part
+    return (name, pool.report.spec.name, decided(pool).upper(), judged, found)
 
 
 def found_in(examination: Examination) -> str:
@@ -67,9 +120,42 @@ def found_in(examination: Examination) -> str:
     return f"{worst.name} departs by {departure}, {allowed}: {worst.standing}"
 
 
-def requirement_rows(every: Sequence[Verification], *, is_one: bool) -> Iterator[tuple[str, ...]]:
-    """A row for each requirement of each recording."""
+@final
+@dataclass(frozen=True, slots=True)
+class RequirementRow:
+    """One requirement, in one recording or in several: `told` what decides, the worst first."""
+
+    text: str
+    outcome: Outcome
+    count: str
+    told: tuple[str, ...]
+
+
+def requirement_rows(every: Sequence[Verification]) -> Iterator[RequirementRow]:
+    """A row for each requirement of each scenario, however many recordings there are of it."""
+    alike: dict[tuple[str, str], list[tuple[str, RequirementResult]]] = {}
     for each in every:
         for result in each.examination.requirements:
-            row = (result.text, str(result.outcome), result.sentence)
-            yield row if is_one else (recording_of(each), *row)
+            key = (each.report.spec.name, result.text)
+            alike.setdefault(key, []).append((recording_of(each), result))
+    is_mixed = len({scenario for scenario, _ in alike}) > 1
+    for (scenario, text), found in alike.items():
+        yield _requirement_row(f"{scenario}: {text}" if is_mixed else text, found)
+
+
+def _requirement_row(text: str, found: Sequence[tuple[str, RequirementResult]]) -> RequirementRow:
+    if len(found) == 1:
+        result = found[0][1]
+        return RequirementRow(text, result.outcome, str(result.outcome), (result.sentence,))
+    outcomes = [result.outcome for _, result in found]
+    worst = next(each for each in OUTCOMES if each in outcomes)
+    count = f"{worst} in {outcomes.count(worst)} of {len(found)}"
+    of_worst = [each for each in found if each[1].outcome is worst]
+    of_worst.sort(key=lambda each: each[1].robustness)
+    if worst is Outcome.SATISFIED:
+        source, result = of_worst[0]
+        return RequirementRow(text, worst, count, (f"least in {source}: {result.sentence}",))
+    told = [f"{source}: {result.sentence}" for source, result in of_worst[:MOST_TOLD]]
+    more = len(of_worst) - MOST_TOLD
+    told += [f"and {more} more"] if more > 0 else []
+    return RequirementRow(text, worst, count, tuple(told))

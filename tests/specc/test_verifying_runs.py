@@ -14,8 +14,9 @@ from runtime.run import Run
 from spec_schema.diagnostics import SpecError
 from specc.cli import main
 from specc.loading import compile_scenario_spec
-from specc.runs import verify_together
+from specc.runs import verifications, verify_together
 from specc.simulating import Simulation, simulate_scenario
+from specc.texts.runs import runs_table
 from verifier.report.report import Verdict
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -25,7 +26,10 @@ DURATION = 14.0
 
 
 def simulated(
-    scenario: Path, requirements: tuple[str, ...] = (), duration: float = DURATION
+    scenario: Path,
+    requirements: tuple[str, ...] = (),
+    duration: float = DURATION,
+    seed: int | None = None,
 ) -> Simulation:
     """The beginning of a run: the robot turns to the lamp and gets there."""
     text = scenario.read_text()
@@ -36,7 +40,8 @@ def simulated(
     other.write_text(text)
     compiled = compile_scenario_spec(other).scenario
     other.unlink()
-    return simulate_scenario(replace(compiled, duration=duration))
+    chosen = compiled.seed if seed is None else seed
+    return simulate_scenario(replace(compiled, duration=duration, seed=chosen))
 
 
 def kept(run: Run, path: Path) -> Path:
@@ -253,11 +258,43 @@ def test_no_advice_on_a_recorded_node_speaks_of_logs(sabotaged: tuple[Path, Path
     assert "judge_when" not in told
 
 
-def test_the_nodes_of_several_runs_are_judged_together(recording: Path, tmp_path: Path) -> None:
-    scenario = compile_scenario_spec(SCENARIO).scenario
-    other = simulate_scenario(replace(scenario, duration=12.0, seed=5))
-    both = [recording, kept(other.run, tmp_path / "second.mcap")]
+@pytest.fixture(scope="module")
+def both(
+    recording: Path, library: Path, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, Path]:
+    """Two recordings of one scenario, with other seeds."""
+    other = simulated(library / "scenarios" / "first_light.yaml", REQUIRED, 12.0, seed=5)
+    return recording, kept(other.run, tmp_path_factory.mktemp("second") / "second.mcap")
 
+
+def test_several_recordings_of_a_scenario_have_one_row_for_each_requirement_and_node(
+    both: tuple[Path, Path],
+) -> None:
+    runs = verify_together(both, only_verdict=True)
+    lines = runs_table(runs).splitlines()
+
+    for text in REQUIRED:
+        (row,) = [line for line in lines if line.startswith(text)]
+        assert " in 2 of 2  " in row
+        results = {
+            each.report.trace.source.rpartition(": ")[0]: result
+            for each in verifications(runs.outcomes)
+            for result in each.examination.requirements
+            if result.text == text
+        }
+        worst = min(results, key=lambda source: results[source].robustness)
+        assert f"{worst}: {results[worst].sentence}" in row
+    nodes = [line.split()[0] for line in lines if line.startswith("r.") and "  " in line]
+    assert [name for name in nodes if name in {"r.avoid", "r.seek", "r.choose"}] == [
+        "r.avoid",
+        "r.seek",
+        "r.choose",
+    ]
+    assert not any("r.choose, INCONCLUSIVE" in line for line in lines)
+    assert "requirements and 3 nodes in 2 recordings" in lines[-1]
+
+
+def test_the_nodes_of_several_runs_are_judged_together(both: tuple[Path, Path]) -> None:
     runs = verify_together(both, only_verdict=True)
 
     pooled = {pool.members[0].part: pool.report.verdict for pool in runs.pools}
