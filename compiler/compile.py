@@ -21,7 +21,7 @@ from compiler.check import Checked, check_behavior, check_examined
 from compiler.horizon import excess
 from compiler.lower_field import Progress, lower_field, measured
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
-from compiler.python_module import ModuleError
+from compiler.python_module import ModuleError, refuse_module
 from compiler.settings import Settings
 from compiler.sketch.claims import additions, sketch_claims
 from compiler.sketch.design import Design
@@ -34,7 +34,7 @@ from compiler.terms import TooManyCasesError
 from runtime.program import Field, Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
-from spec_schema.field_forms import Form, Formula, Step
+from spec_schema.field_forms import Form, Formula, Module, Step
 from spec_schema.field_modes import Modes
 from spec_schema.load import Loaded, examine
 from spec_schema.places import Path as KeyPath
@@ -66,10 +66,13 @@ class Compiled:
     notes: tuple[str, ...] = ()
 
 
-def compile_file(path: Path, progress: Progress, judge: Judge | None = None) -> Compiled:
+def compile_file(
+    path: Path, progress: Progress, judge: Judge | None = None, *, allow_code: bool = False
+) -> Compiled:
     """Compile the behavior spec at `path`.
 
     judge: says what a compiled sketch lacks of its claims, or has beside them, in sentences.
+    allow_code: whether the Python of a `module` field may be run.
 
     Raises:
         SpecError: with everything that is wrong with it.
@@ -77,16 +80,24 @@ def compile_file(path: Path, progress: Progress, judge: Judge | None = None) -> 
     examined = examine(path)
     if examined.mistakes or examined.loaded is None:
         raise SpecError(check_examined(examined))
-    return compile_loaded(examined.loaded, progress, judge)
+    return compile_loaded(examined.loaded, progress, judge, allow_code=allow_code)
 
 
-def compile_loaded(loaded: Loaded, progress: Progress, judge: Judge | None = None) -> Compiled:
-    """Compile a behavior spec that has been read."""
+def compile_loaded(
+    loaded: Loaded, progress: Progress, judge: Judge | None = None, *, allow_code: bool = False
+) -> Compiled:
+    """Compile a behavior spec that has been read; see `compile_file`.
+
+    Raises:
+        SpecError: with everything that is wrong with it, or its code may not be run (V336).
+    """
     if not isinstance(loaded.spec, BehaviorSpec):
         message = f"this is {with_article(loaded.spec.kind)}; a behavior belongs here"
         raise SpecError([loaded.error("S200", ("kind",), message, "name a behavior spec")])
     checked = check_behavior(loaded, loaded.spec)
     _stop_at_errors(checked)
+    if isinstance(loaded.spec.field.form, Module) and not allow_code:
+        refuse_module(loaded, loaded.spec.field.form)
     program = assembled(checked)
     if checked.design is not None:
         program = _sketched(checked, checked.design, program, progress, judge)

@@ -1,6 +1,7 @@
 """The user's own Python as a field: found beside the spec, called with arrays, its answer checked.
 
-This is the only place where code that a spec's author wrote is run, and only `compile` comes here.
+This is the only place where code of a behavior's author is run, and only `compile_loaded` comes
+here, past `refuse_module`.
 """
 
 from collections.abc import Callable, Mapping
@@ -11,6 +12,9 @@ import numpy as np
 from compiler.tabulate import Sampler
 from runtime.arrays import Array
 from runtime.user_code import load_module
+from spec_schema.diagnostics import SpecError
+from spec_schema.field_forms import Module
+from spec_schema.load import Loaded
 
 
 class ModuleError(Exception):
@@ -19,6 +23,20 @@ class ModuleError(Exception):
     def __init__(self, message: str, remedy: str) -> None:
         self.message, self.remedy = message, remedy
         super().__init__(message)
+
+
+def refuse_module(loaded: Loaded, form: Module) -> None:
+    """Stops before the code of a field is run that the user has not allowed.
+
+    Raises:
+        SpecError: always (V336).
+    """
+    message = f"this field is Python code, {form.call}, which is run only where it is allowed"
+    remedy = (
+        "read that code; then `specc compile`, `specc simulate` and `specc check --claims` run it "
+        "with --allow-code, and what is compiled holds a table, which every command takes"
+    )
+    raise SpecError([loaded.error("V336", ("field", "module"), message, remedy, key=True)])
 
 
 def sampler(call: str, beside: Path, over: tuple[str, ...], driven: tuple[str, ...]) -> Sampler:

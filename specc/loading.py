@@ -31,14 +31,18 @@ def _in_silence(_what: str, _done: int, _of: int) -> None:
     """Nobody watches."""
 
 
-def compile_spec(path: Path | str, progress: Progress = _in_silence) -> Compiled:
+def compile_spec(
+    path: Path | str, progress: Progress = _in_silence, *, allow_code: bool = True
+) -> Compiled:
     """Compile a behavior spec; `progress(what, done, of)` is called on the way.
 
+    allow_code: whether a field that is Python code may be run; who names such a spec means that.
+
     Raises:
-        SpecError: with everything that is wrong with it.
+        SpecError: with everything that is wrong with it, or its code may not be run (V336).
     """
     refuse_log(Path(path))
-    return compile_file(Path(path), progress, faults_of)
+    return compile_file(Path(path), progress, faults_of, allow_code=allow_code)
 
 
 def kind_of(path: Path | str) -> str:
@@ -56,31 +60,39 @@ def kind_of(path: Path | str) -> str:
 
 
 def compile_architecture_spec(
-    path: Path | str, progress: Progress = _in_silence
+    path: Path | str, progress: Progress = _in_silence, *, allow_code: bool = False
 ) -> CompiledArchitecture:
     """Compile an architecture and all that it names.
 
+    allow_code: whether fields of behaviors in it that are Python code may be run.
+
     Raises:
-        SpecError: with everything that is wrong with it.
+        SpecError: with everything that is wrong with it, or its code may not be run (V336).
     """
     refuse_log(Path(path))
-    return compile_architecture(Path(path), progress, faults_of)
+    return compile_architecture(Path(path), progress, faults_of, allow_code=allow_code)
 
 
 def compile_scenario_spec(
-    path: Path | str, progress: Progress = _in_silence, seed: int | None = None
+    path: Path | str,
+    progress: Progress = _in_silence,
+    seed: int | None = None,
+    *,
+    allow_code: bool = False,
 ) -> CompiledScenario:
     """Compile a scenario and all that it names; `seed` in the place of its own.
 
+    allow_code: as of `compile_architecture_spec`.
+
     Raises:
-        SpecError: with everything that is wrong with it.
+        SpecError: with everything that is wrong with it, or its code may not be run (V336).
     """
     refuse_log(Path(path))
-    return compile_scenario(Path(path), progress, seed, faults_of)
+    return compile_scenario(Path(path), progress, seed, faults_of, allow_code=allow_code)
 
 
 def load_architecture(path: Path | str) -> tuple[Architecture, Body]:
-    """An architecture and its body: a .yaml is compiled, a .specc read.
+    """An architecture and its body: a .yaml is compiled, without running code, a .specc read.
 
     Raises:
         SpecError: the spec is wrong, or the artifact is damaged.
@@ -94,7 +106,11 @@ def load_architecture(path: Path | str) -> tuple[Architecture, Body]:
 
 
 def load_scenario(
-    path: Path | str, progress: Progress = _in_silence, seed: int | None = None
+    path: Path | str,
+    progress: Progress = _in_silence,
+    seed: int | None = None,
+    *,
+    allow_code: bool = False,
 ) -> CompiledScenario:
     """A scenario: a .yaml is compiled, a .specc read; `seed` in the place of its own.
 
@@ -103,7 +119,7 @@ def load_scenario(
     """
     path = Path(path)
     if path.suffix != ".specc":
-        return compile_scenario_spec(path, progress, seed)
+        return compile_scenario_spec(path, progress, seed, allow_code=allow_code)
     with _told(path, "scenario"):
         found = scenario_artifact.from_bytes(path.read_bytes())
     return CompiledScenario(found if seed is None else replace(found, seed=seed), ())
@@ -180,14 +196,14 @@ def as_program(spec: Program | Path | str) -> Program:
     return spec if isinstance(spec, Program) else load_program(spec)
 
 
-def load_program(path: Path | str) -> Program:
-    """The program of a spec: a .yaml is compiled, a .specc read.
+def load_program(path: Path | str, *, allow_code: bool = True) -> Program:
+    """The program of a spec: a .yaml is compiled, as by `compile_spec`, a .specc read.
 
     Raises:
         SpecError: the spec is wrong, or the artifact is damaged.
     """
     path = Path(path)
     if path.suffix != ".specc":
-        return compile_spec(path).program
+        return compile_spec(path, allow_code=allow_code).program
     with _told(path, "behavior"):
         return read_artifact(path)

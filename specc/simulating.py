@@ -61,10 +61,12 @@ def simulate_scenario(
 
     Raises:
         SpecError: the spec is wrong, there is no room (V381), or code of the user's own may not
-            be run or fails (V382).
+            be run (V336, V382) or fails (V382).
     """
     tell = progress or _in_silence
-    scenario = spec if isinstance(spec, Scenario) else load_scenario(spec, tell).scenario
+    if not isinstance(spec, Scenario):
+        spec = load_scenario(spec, tell, allow_code=allow_code).scenario
+    scenario = spec
     if seed is not None:
         scenario = dataclasses.replace(scenario, seed=seed)
     if duration is not None:

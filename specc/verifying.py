@@ -155,7 +155,7 @@ def behavior_for_verify(path: Path) -> Program:
         name = loaded.spec.name
         remedy = f"specc compile {path}, then specc verify TRACE --spec {name}.specc"
         refuse_code(loaded, "verify", remedy)
-    return load_program(path)
+    return load_program(path, allow_code=False)
 
 
 def refuse_code(loaded: Loaded, command: str, remedy: str) -> None:

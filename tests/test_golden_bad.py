@@ -44,7 +44,7 @@ def diagnose(path: Path) -> tuple[Diagnostic, ...]:
     if any(diagnostic.severity is Severity.ERROR for diagnostic in found) or not is_behavior(path):
         return found
     try:
-        return compile_file(path, lambda _what, _done, _of: None).warnings
+        return compile_file(path, lambda _what, _done, _of: None, allow_code=True).warnings
     except SpecError as error:
         return error.diagnostics
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path as FilePath
 
-from compiler.architecture.library import Behavior, Library
+from compiler.architecture.library import Behavior, Library, checked_only
 from compiler.architecture.passes import CompiledArchitecture, compile_parts
 from compiler.compile import Judge, compile_loaded
 from compiler.findings import Findings
@@ -12,21 +12,39 @@ from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Loaded, examine
 
-__all__ = ["CompiledArchitecture", "compile_architecture", "tabulating"]
+__all__ = ["CompiledArchitecture", "compile_architecture", "tabulating", "wire_architecture"]
 
 
 def compile_architecture(
-    path: FilePath | str, progress: Progress, judge: Judge | None = None
+    path: FilePath | str,
+    progress: Progress,
+    judge: Judge | None = None,
+    *,
+    allow_code: bool = False,
 ) -> CompiledArchitecture:
     """Compile the architecture spec at `path`, and everything that it names, each file once.
 
-    judge: as of `compile_file`, for sketched behaviors.
+    judge, allow_code: as of `compile_file`, for the behaviors.
 
     Raises:
         SpecError: with everything that is wrong with it, and with what it names.
     """
-    library = tabulating(progress, judge)
-    examined = examine(FilePath(path))
+    return _compiled(FilePath(path), tabulating(progress, judge, allow_code=allow_code))
+
+
+def wire_architecture(path: FilePath | str) -> CompiledArchitecture:
+    """The same without tables: how it is wired is known, and it can't be run.
+
+    Nothing that an author of its specs wrote is run.
+
+    Raises:
+        SpecError: with everything that is wrong with it, and with what it names.
+    """
+    return _compiled(FilePath(path), Library(checked_only))
+
+
+def _compiled(path: FilePath, library: Library) -> CompiledArchitecture:
+    examined = examine(path)
     loaded = examined.loaded
     if loaded is None or not isinstance(loaded.spec, ArchitectureSpec):
         raise SpecError(examined.mistakes or [_no_architecture(loaded)])
@@ -38,11 +56,11 @@ def compile_architecture(
     return found
 
 
-def tabulating(progress: Progress, judge: Judge | None) -> Library:
+def tabulating(progress: Progress, judge: Judge | None, *, allow_code: bool) -> Library:
     """A library that compiles behaviors to their tables."""
 
     def compiler(loaded: Loaded, _spec: BehaviorSpec) -> Behavior:
-        compiled = compile_loaded(loaded, progress, judge)
+        compiled = compile_loaded(loaded, progress, judge, allow_code=allow_code)
         return Behavior(compiled.program, compiled.warnings)
 
     return Library(compiler)

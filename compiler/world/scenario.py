@@ -15,16 +15,21 @@ __all__ = ["CompiledScenario", "compile_scenario"]
 
 
 def compile_scenario(
-    path: FilePath | str, progress: Progress, seed: int | None = None, judge: Judge | None = None
+    path: FilePath | str,
+    progress: Progress,
+    seed: int | None = None,
+    judge: Judge | None = None,
+    *,
+    allow_code: bool = False,
 ) -> CompiledScenario:
     """Compile the scenario at `path` and everything that it names, each file once.
 
-    seed: in the place of the one in the file. judge: as of `compile_file`.
+    seed: in the place of the one in the file. judge, allow_code: as of `compile_file`.
 
     Raises:
         SpecError: with everything that is wrong with it, and with what it names.
     """
-    library = tabulating(progress, judge)
+    library = tabulating(progress, judge, allow_code=allow_code)
     examined = examine(FilePath(path))
     loaded = examined.loaded
     if loaded is None or not isinstance(loaded.spec, ScenarioSpec):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -19,8 +19,13 @@ from specc.cli.status import Status
 from specc.cli.warming import warmed
 
 if TYPE_CHECKING:
+    from compiler.check_kinds import Wired
     from runtime.program import Program
+    from spec_schema.diagnostics import Diagnostic
     from verifier.topology.claims.findings import Finding
+
+TOLD: Final = 3
+"""Of more files what was proved is told only where it is wanted."""
 
 
 def check(
@@ -29,12 +34,26 @@ def check(
         bool,
         typer.Option("--claims", help="Compile the specs, and prove or refute their `expect:`."),
     ] = False,
+    notes: Annotated[
+        bool | None,
+        typer.Option(
+            "--notes/--no-notes",
+            help="Tell what was proved of architectures, and what they leave open; default: "
+            f"where at most {TOLD} files are checked, and in JSON not.",
+        ),
+    ] = None,
+    allow_code: Annotated[
+        bool, typer.Option("--allow-code", help="With --claims: run fields that are your Python.")
+    ] = False,
     form: ReportFormatOption = ReportFormat.TEXT,
 ) -> int:
     """Find every mistake in specs, each with its place and what to write instead.
 
     Nothing that a spec's author wrote is run. With `--claims` specs without mistakes are compiled,
     and each claim under `expect:` is proved, sampled, or refuted with a witness.
+
+    Of an architecture it tells how each channel is resolved and, where `exclusive` is claimed, the
+    proof; then what is left open: controls at their defaults, outputs that no node reads.
 
     **Examples**
 
@@ -43,8 +62,33 @@ def check(
     `specc check patrol.yaml --format json`
 
     `specc check patrol.yaml --claims`
+
+    `specc check specs/architectures/ --notes`
     """
-    from compiler.check import check as check_file
+    files = _files(paths)
+    if notes is None:
+        notes = form is ReportFormat.TEXT and len(files) <= TOLD
+    found, made = _checked(files)
+    if any(each.severity == "error" for each in found):
+        _print(found, made if notes and form is ReportFormat.JSON else None, form, claims=claims)
+        return Status.BAD_INPUT
+    wired = made if notes else None
+    if claims:
+        show_diagnostics(found)
+        return _check_claims(files, found, wired, form, allow_code=allow_code)
+    _print(found, wired, form)
+    if form is ReportFormat.TEXT:
+        say(f"{_specs(len(files))} without mistakes", "bold green")
+    return Status.YES
+
+
+def _files(paths: Sequence[Path]) -> Sequence[Path]:
+    """The specs that are meant.
+
+    Raises:
+        typer.BadParameter: there is none.
+        SpecError: one is a log.
+    """
     from specc.files import spec_files
     from specc.loading import refuse_log
 
@@ -53,26 +97,68 @@ def check(
         refuse_log(file)
     if not files:
         raise typer.BadParameter(f"no .yaml file is in {', '.join(map(str, paths))}")
-    found = tuple(d for file in files for d in check_file(file))
-    failed = any(d.severity == "error" for d in found)
-    if claims and not failed:
-        show_diagnostics(found)
-        return _check_claims(files, form, [d.as_json() for d in found])
+    return files
+
+
+def _checked(files: Sequence[Path]) -> "tuple[list[Diagnostic], list[Wired]]":
+    """Everything that is wrong or doubtful, and the sound architectures and scenarios."""
+    from compiler.check import check_file
+
+    checked = [check_file(file) for file in files]
+    found = [each for one in checked for each in one.diagnostics]
+    return found, [one.made for one in checked if one.made is not None]
+
+
+def _print(
+    found: "Sequence[Diagnostic]",
+    wired: "Sequence[Wired] | None",
+    form: ReportFormat,
+    *,
+    claims: bool = False,
+) -> None:
+    """What was found without compiling; wired: None where nobody wants to be told of it."""
     match form:
         case ReportFormat.JSON:
-            mistakes = [d.as_json() for d in found]
-            print_json({"mistakes": mistakes, "claims": []} if claims else mistakes)
+            record = _record(found, wired)
+            bare = wired is None and not claims
+            print_json(record["mistakes"] if bare else record | ({"claims": []} if claims else {}))
         case ReportFormat.GITHUB:
             print_annotations(found)
         case ReportFormat.TEXT:
             show_diagnostics(found)
-            if not failed:
-                say(f"{_specs(len(files))} without mistakes", "bold green")
-    return Status.BAD_INPUT if failed else Status.YES
+            _tell(wired or ())
+
+
+def _record(
+    found: "Sequence[Diagnostic]", wired: "Sequence[Wired] | None"
+) -> dict[str, list[dict[str, object]]]:
+    """Mistakes, and what was proved and left open where it is wanted."""
+    record = {"mistakes": [each.as_json() for each in found]}
+    if wired is not None:
+        from specc.texts.architecture import conclusions_records
+
+        record["architectures"] = [one for each in wired for one in conclusions_records(each)]
+    return record
+
+
+def _tell(wired: "Sequence[Wired]") -> None:
+    """What was proved and left open, in a quiet style; of several with their names."""
+    if not wired:
+        return
+    from specc.texts.architecture import conclusions
+
+    for each in wired:
+        for sentence in conclusions(each, named=len(wired) > 1):
+            say(sentence, "dim")
 
 
 def _check_claims(
-    files: Sequence[Path], form: ReportFormat, mistakes: list[dict[str, object]]
+    files: Sequence[Path],
+    mistakes: "Sequence[Diagnostic]",
+    wired: "Sequence[Wired] | None",
+    form: ReportFormat,
+    *,
+    allow_code: bool,
 ) -> int:
     """Put the claims of sound specs to the judge: 1 where one is refuted, 4 where one is open.
 
@@ -81,16 +167,18 @@ def _check_claims(
     from specc.texts.claims import finding_record, totals_text
 
     warmed(None)
+    if form is ReportFormat.TEXT:
+        _tell(wired or ())
     found: list[tuple[Program, Finding]] = []
     interrupted = False
     try:
-        for program, finding in _judged(files, form):
+        for program, finding in _judged(files, form, allow_code=allow_code):
             found.append((program, finding))
     except KeyboardInterrupt:
         interrupted = True
     if form is ReportFormat.JSON:
         records = [finding_record(program, finding) for program, finding in found]
-        print_json({"mistakes": mistakes, "claims": records})
+        print_json({**_record(mistakes, wired), "claims": records})
     if found if interrupted else form is not ReportFormat.JSON:
         say(totals_text([finding for _, finding in found]), "bold")
     if interrupted:
@@ -102,7 +190,9 @@ def _check_claims(
     return Status.INCONCLUSIVE if "undecided" in rulings else Status.YES
 
 
-def _judged(files: Sequence[Path], form: ReportFormat) -> "Iterator[tuple[Program, Finding]]":
+def _judged(
+    files: Sequence[Path], form: ReportFormat, *, allow_code: bool
+) -> "Iterator[tuple[Program, Finding]]":
     """The claims of all specs, each printed for people once it is decided."""
     from specc.loading import load_program
     from verifier.topology.claims.judge import judged
@@ -111,7 +201,7 @@ def _judged(files: Sequence[Path], form: ReportFormat) -> "Iterator[tuple[Progra
         if not (_claims_in(file) or _is_sketch(file)):
             continue
         with shown_bar(file.name) as bar:
-            program = load_program(file)
+            program = load_program(file, allow_code=allow_code)
             for finding in judged(program, None, bar.advance):
                 with bar.aside():
                     _print_claim(program, finding, form)

@@ -1,7 +1,8 @@
 """`specc compile`: from YAML to an artifact with measured error bounds."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final, final
 
 import typer
 
@@ -9,8 +10,22 @@ from specc.cli.console import print_json, print_text, progress_bar, say, show_di
 from specc.cli.options import Format, FormatOption
 from specc.cli.warming import warmed
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 NAMED_BY: Final = {"body": "architecture", "arbiter": "architecture", "world": "scenario"}
 """What is compiled only with something else."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a user wants to be made of a spec."""
+
+    output: Path | None
+    dumps: bool
+    allow_code: bool
+    form: Format
 
 
 def compile_(
@@ -25,12 +40,21 @@ def compile_(
     dump: Annotated[
         bool, typer.Option("--dump", help="Print the compiled program as text, and write nothing.")
     ] = False,
+    allow_code: Annotated[
+        bool,
+        typer.Option(
+            "--allow-code",
+            help="Run fields that are Python of yours, of behaviors in an architecture.",
+        ),
+    ] = False,
     form: FormatOption = Format.TEXT,
 ) -> None:
     """Compile a behavior into interpolated tables with a *measured* error bound.
 
     An architecture or a scenario is compiled with all that it names, into one file. The same spec
-    gives the same bytes. A `module` field runs the user's Python, here only.
+    gives the same bytes. A field that is Python code (`module`) is run to make its table: of a
+    behavior that you name, and with `--allow-code` of those that an architecture or a scenario
+    names. What is compiled runs it no more.
 
     **Examples**
 
@@ -42,13 +66,20 @@ def compile_(
 
     `specc compile specs/scenarios/first_light.yaml -o first_light.specc`
     """
-    from compiler.dump import dump as dumped
-    from spec_schema.wording import with_article
-    from specc import loading
     from specc.files import require_suffix
-    from specc.texts import results
 
     require_suffix(output, ".specc")
+    _compiler_of(spec)(spec, Wanted(output, dump, allow_code, form))
+
+
+def _compiler_of(spec: Path) -> "Callable[[Path, Wanted], None]":
+    """What compiles a spec of that kind.
+
+    Raises:
+        typer.BadParameter: it is compiled already, or with another one.
+    """
+    from spec_schema.wording import with_article
+    from specc import loading
 
     if spec.suffix == ".specc":
         raise typer.BadParameter(f"{spec} is compiled already: name a spec (.yaml)")
@@ -56,72 +87,69 @@ def compile_(
     if kind in NAMED_BY:
         named = f"{with_article(kind)}, which is compiled with the {NAMED_BY[kind]} that names it"
         raise typer.BadParameter(f"{spec} is {named}")
-    if kind == "architecture":
-        _architecture(spec, output, form, dumps=dump)
-        return
-    if kind == "scenario":
-        if dump:
-            raise typer.BadParameter("--dump is for behaviors and architectures")
-        _scenario(spec, output, form)
-        return
+    return {"architecture": _architecture, "scenario": _scenario}.get(kind, _behavior)
+
+
+def _behavior(spec: Path, wanted: Wanted) -> None:
+    from compiler.dump import dump as dumped
+    from specc import loading
+    from specc.texts import results
+
     warmed(spec)
     with progress_bar(f"compiling {spec.name}") as progress:
         compiled = loading.compile_spec(spec, progress)
     show_diagnostics(compiled.warnings)
-    if dump:
+    if wanted.dumps:
         text = dumped(compiled.program, compiled.notes)
-        print_json({"dump": text}) if form is Format.JSON else print_text(text)
+        print_json({"dump": text}) if wanted.form is Format.JSON else print_text(text)
         return
-    path = output or Path(f"{compiled.program.name}.specc")
+    path = wanted.output or Path(f"{compiled.program.name}.specc")
     data = loading.write_artifact(compiled.program, path)
-    if form is Format.JSON:
+    if wanted.form is Format.JSON:
         print_json(results.compile_record(compiled, path, data))
         return
     print_text(results.compile_summary(compiled))
     say(f"wrote {path} ({len(data):,} bytes)", "bold")
 
 
-def _architecture(spec: Path, output: Path | None, form: Format, *, dumps: bool) -> None:
+def _architecture(spec: Path, wanted: Wanted) -> None:
     """An architecture with its body and behaviors, in one artifact."""
     from specc import loading
+    from specc.texts.architecture import conclusions, conclusions_record
     from specc.texts.wiring import record, summary
     from specc.wired import wired
 
     with progress_bar(f"compiling {spec.name}") as progress:
-        compiled = loading.compile_architecture_spec(spec, progress)
+        compiled = loading.compile_architecture_spec(spec, progress, allow_code=wanted.allow_code)
     show_diagnostics(compiled.warnings)
-    if dumps:
+    if wanted.dumps:
         found = wired(compiled.architecture, compiled.body)
-        print_json(record(found)) if form is Format.JSON else print_text(summary(found))
+        print_json(record(found)) if wanted.form is Format.JSON else print_text(summary(found))
         return
-    path = output or Path(f"{compiled.architecture.name}.specc")
+    path = wanted.output or Path(f"{compiled.architecture.name}.specc")
     data = loading.write_architecture(compiled, path)
-    channels = {
-        channel.name: channel.resolution.way.value for channel in compiled.architecture.channels
-    }
-    if form is Format.JSON:
+    if wanted.form is Format.JSON:
         written = {"name": compiled.architecture.name, "artifact": str(path), "bytes": len(data)}
-        print_json({**written, "channels": channels, "notes": list(compiled.notes)})
+        print_json({**written, **conclusions_record(compiled.architecture, compiled.notes)})
         return
-    for channel in compiled.architecture.channels:
-        proof = f": {channel.resolution.proof}" if channel.resolution.proof else ""
-        say(f"{channel.name} {channel.resolution.way.value}{proof}")
-    for note in compiled.notes:
-        say(note)
+    for sentence in conclusions(compiled):
+        say(sentence)
     say(f"wrote {path} ({len(data):,} bytes)", "bold")
 
 
-def _scenario(spec: Path, output: Path | None, form: Format) -> None:
+def _scenario(spec: Path, wanted: Wanted) -> None:
     """A scenario with its world and robots, in one artifact."""
     from specc import loading
 
+    if wanted.dumps:
+        raise typer.BadParameter("--dump is for behaviors and architectures")
     with progress_bar(f"compiling {spec.name}") as progress:
-        compiled = loading.compile_scenario_spec(spec, progress)
+        compiled = loading.compile_scenario_spec(spec, progress, allow_code=wanted.allow_code)
     show_diagnostics(compiled.warnings)
     scenario = compiled.scenario
-    path = output or Path(f"{scenario.name}.specc")
+    path = wanted.output or Path(f"{scenario.name}.specc")
     data = loading.write_scenario(scenario, path)
-    if form is Format.JSON:
+    if wanted.form is Format.JSON:
         written = {"name": scenario.name, "artifact": str(path), "bytes": len(data)}
         print_json({**written, "step": scenario.step, "notes": list(compiled.notes)})
         return

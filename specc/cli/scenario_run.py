@@ -45,7 +45,7 @@ def run_scenario(spec: Path, wanted: Wanted) -> Status:
     wanted.pictures.refuse_early()
     warmed(spec)
     with progress_bar(f"compiling {spec.name}") as bar:
-        compiled = load_scenario(spec, bar, wanted.seed)
+        compiled = load_scenario(spec, bar, wanted.seed, allow_code=wanted.allow_code)
     show_diagnostics(compiled.warnings)
     if wanted.is_watched:
         made, took = _watched(compiled.scenario, wanted), None

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from specc.cli.console import print_json, print_text, progress_bar, say, show_diagnostics
+from specc.cli.console import print_json, print_text, say, show_diagnostics
 from specc.cli.options import Format, FormatOption
 from specc.cli.portrait import StyleOption
 from specc.figures.style_names import Style
@@ -31,6 +31,8 @@ def wiring(
 ) -> None:
     """Draw how an architecture is wired: levels, control interfaces, channels and conflicts.
 
+    No tables are made, and nothing that an author of its specs wrote is run.
+
     **Examples**
 
     `specc wiring specs/architectures/thesis_3_3.yaml -o wiring.svg`
@@ -39,6 +41,7 @@ def wiring(
 
     `specc wiring specs/architectures/thesis_3_3.yaml --format json`
     """
+    from compiler.architecture.compile import wire_architecture
     from specc import loading
     from specc.files import require_suffix
     from specc.texts.wiring import record, summary
@@ -48,8 +51,8 @@ def wiring(
     if spec.suffix == ".specc":
         architecture, body = loading.load_architecture(spec)
     else:
-        with progress_bar(f"compiling {spec.name}") as progress:
-            compiled = loading.compile_architecture_spec(spec, progress)
+        loading.refuse_log(spec)
+        compiled = wire_architecture(spec)
         show_diagnostics(compiled.warnings)
         architecture, body = compiled.architecture, compiled.body
     found = wired(architecture, body)

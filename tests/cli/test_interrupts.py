@@ -78,7 +78,7 @@ def test_ctrl_c_after_the_last_output_changes_nothing() -> None:
 def test_every_command_hands_ctrl_c_on_to_where_it_is_told(
     command: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def impatient(*_arguments: Any) -> NoReturn:
+    def impatient(*_arguments: Any, **_named: Any) -> NoReturn:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(specc.loading, "compile_spec", impatient)
@@ -90,7 +90,7 @@ def test_every_command_hands_ctrl_c_on_to_where_it_is_told(
 def test_claims_of_which_none_was_judged_are_not_called_none(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def impatient(*_arguments: Any) -> NoReturn:
+    def impatient(*_arguments: Any, **_named: Any) -> NoReturn:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(judge, "_judged_at", impatient)
