@@ -67,12 +67,9 @@ def verify(
 
     `specc verify drive.mcap --format json > verdict.json`
     """
-    from specc.files import require_suffix
-    from specc.reported import KINDS
-    from specc.runs import Unusable, runs_of, verify_each
+    from specc.runs import verify_each
 
-    for path in output:
-        require_suffix(path, *KINDS)
+    _refuse_early(output)
     warmed(spec)
     judge = partial(
         verify_each,
@@ -84,6 +81,37 @@ def verify(
         only_verdict=quick,
     )
     outcomes, is_interrupted = _judged(judge, len(traces))
+    return _told(outcomes, traces, output, form, is_interrupted=is_interrupted)
+
+
+def _refuse_early(output: Sequence[Path]) -> None:
+    """Stops before anything is judged whose report could not be written.
+
+    Raises:
+        typer.BadParameter: a file of another kind.
+    """
+    from specc.files import require_suffix
+    from specc.reported import KINDS
+
+    for path in output:
+        require_suffix(path, *KINDS)
+
+
+def _told(
+    outcomes: "Sequence[Outcome]",
+    traces: Sequence[Path],
+    output: Sequence[Path],
+    form: ReportFormat,
+    *,
+    is_interrupted: bool,
+) -> int:
+    """The exit status, after everything is printed and written.
+
+    Raises:
+        SpecError: the only recording can't be used.
+    """
+    from specc.runs import Unusable, runs_of
+
     if len(traces) == 1 and outcomes and isinstance(outcomes[0], Unusable):
         raise outcomes[0].error
     runs = runs_of(outcomes, is_whole=not is_interrupted)
