@@ -85,4 +85,6 @@ def signal_of(quantity: Quantity) -> Signal:
         is_held=quantity.is_held,
         period=quantity.high - quantity.low if turns else 0.0,
         low=quantity.low if turns else 0.0,
+        is_discrete=quantity.kind is Kind.DISCRETE,
+        labels=quantity.labels,
     )

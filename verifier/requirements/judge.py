@@ -2,21 +2,16 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final
-
-import numpy as np
+from dataclasses import replace
 
 from runtime.program import Unit
 from runtime.requirement import Requirement
 from verifier.report.requirement_results import Outcome, RequirementResult, Witness
-from verifier.report.wording import listed, number, quantity, suffix
 from verifier.requirements.course import BEYOND
-from verifier.requirements.robustness import Part, robustness
+from verifier.requirements.robustness import robustness
+from verifier.requirements.sentences import ROUNDING, Told, sentence_of, value_at
 from verifier.requirements.signals import Signal, Span, names_in, span_of
 from verifier.requirements.witness import deciding
-
-ROUNDING: Final = 1e-9
-"""In SI: so little below 0 is 0."""
 
 
 def judge_requirements(
@@ -52,16 +47,14 @@ def judge_requirement(
     witness = None
     if decides is not None:
         names = names_in(decides.margin, requirement.quantities)
-        values = {name: _value_at(signals[name], decides.time) for name in names}
+        values = {name: value_at(signals[name], decides.time) for name in names}
         witness = Witness(decides.time - span.start, values)
     low, high = _unbounded(low), _unbounded(high)
-    told = RequirementResult(
+    found = RequirementResult(
         requirement.text, outcome, low, high, unit, witness, "", requirement.origin
     )
-    sentence = _sentence(told, part, span, units)
-    return RequirementResult(
-        requirement.text, outcome, low, high, unit, witness, sentence, requirement.origin
-    )
+    told = Told(part, span, requirement.quantities, signals, units)
+    return replace(found, sentence=sentence_of(found, decides, told))
 
 
 def _outcome(low: float, high: float) -> Outcome:
@@ -72,41 +65,3 @@ def _outcome(low: float, high: float) -> Outcome:
 
 def _unbounded(value: float) -> float:
     return math.copysign(math.inf, value) if abs(value) >= BEYOND else value
-
-
-def _value_at(signal: Signal, time: float) -> float:
-    if signal.is_held:
-        place = int(np.searchsorted(signal.times, time, "right")) - 1
-        return float(signal.values[max(place, 0)])
-    return float(np.interp(time, signal.times, signal.values))
-
-
-def _sentence(result: RequirementResult, part: Part, span: Span, units: Mapping[str, Unit]) -> str:
-    if result.outcome is Outcome.OPEN:
-        seconds = number(span.end - span.start)
-        return f"open: {_why_open(part, span)} (the run is {seconds} s long)"
-    how = f"{result.outcome}{_by(result)}"
-    if result.witness is None:
-        return how
-    values = [_shown(name, value, units) for name, value in result.witness.values.items()]
-    return f"{how} at {number(result.witness.time)} s, where {listed(values)}"
-
-
-def _by(result: RequirementResult) -> str:
-    """By how much, where that has one unit."""
-    robustness, unit = abs(result.robustness), result.unit
-    if not unit.text or math.isinf(robustness):
-        return ""
-    if robustness <= ROUNDING:
-        return ", but exactly at its bound,"
-    return f" by {number(robustness / unit.scale)}{suffix(unit)}"
-
-
-def _shown(name: str, value: float, units: Mapping[str, Unit]) -> str:
-    return f"{name} is {quantity(value, units.get(name, Unit('1', 1.0)))}"
-
-
-def _why_open(part: Part, span: Span) -> str:
-    if part.reach > span.end - span.start:
-        return f"its windows reach {number(part.reach)} s ahead"
-    return "what it reads was not measured where that decides"

@@ -28,7 +28,7 @@ class Signal:
     """A quantity: `times` (T,) seconds, strictly increasing, and `values` (T,) in SI.
 
     is_held: a value stays until the next sample; else it moves straight to it. period: of one that
-    wraps at low + period, else 0.
+    wraps at low + period, else 0. is_discrete: its values are counts, or places among `labels`.
     """
 
     name: str
@@ -37,6 +37,8 @@ class Signal:
     is_held: bool = False
     period: float = 0.0
     low: float = 0.0
+    is_discrete: bool = False
+    labels: tuple[str, ...] = ()
 
     @property
     def usual_period(self) -> float:

@@ -85,7 +85,7 @@ def _nearest(course: Course, value: float, first: float, last: float) -> tuple[f
     ends = np.array([first, last])
     left, right = course.values_at(ends)
     inside = (course.times > first) & (course.times <= last)
-    passed = _passages(course, value)
+    passed = passages(course, value)
     passed = passed[(passed > first) & (passed < last)]
     times = np.concatenate([ends, course.times[inside], course.times[inside], passed])
     values = np.concatenate(
@@ -102,7 +102,15 @@ def _nearest(course: Course, value: float, first: float, last: float) -> tuple[f
     return float(times[chosen]), float(values[chosen])
 
 
-def _passages(course: Course, value: float) -> Array:
+def lowest_within(course: Course, first: float, last: float) -> float:
+    """The earliest instant of a window at which, or just before which, a course is the least."""
+    left, right = course.values_at(np.array([first, last]))
+    inside = (course.times > first) & (course.times <= last)
+    values = [right[:1], left[1:], course.before[inside], course.after[inside]]
+    return _nearest(course, float(np.concatenate(values).min()), first, last)[0]
+
+
+def passages(course: Course, value: float) -> Array:
     """Where the course passes through `value` inside of its pieces."""
     start, end = course.after[:-1] - value, course.before[1:] - value
     pieces = np.flatnonzero(np.sign(start) * np.sign(end) < 0.0)
