@@ -24,7 +24,7 @@ from runtime.scheduler.nodes import (
     Said,
     Ticking,
 )
-from runtime.scheduler.observer import Event, Observer, Resolved, Tick, What
+from runtime.scheduler.observer import Event, Observer, Resolved, Silent, Tick, What
 from runtime.scheduler.ticker import Ticker, domains_of
 from runtime.user_code import Callee
 
@@ -47,6 +47,7 @@ class Agent:
         robot = scenario.robots[place]
         architecture = robot.architecture
         self._place, self._observer = place, observer
+        self._is_observed = not isinstance(observer, Silent)
         self._architecture = architecture
         self.board = Board(architecture, robot.body.sensors)
         self.nodes = [
@@ -71,11 +72,13 @@ class Agent:
         """Let one node sample the board."""
         allowed = self.acting.allowed[node]
         said = self.nodes[node].tick(self.board.values, time, allowed=allowed)
-        self._tell(instant, node, -1, said.remarks)
-        acts = allowed and said.acts
-        register, outputs, commands, *_ = said
-        tick = Tick(self._place, node, register, outputs, commands, allowed, acts)
-        self._observer.ticked(instant, tick)
+        if said.remarks or self._told:
+            self._tell(instant, node, -1, said.remarks)
+        if self._is_observed:
+            register, outputs, commands, acts, _ = said
+            acts = allowed and acts
+            tick = Tick(self._place, node, register, outputs, commands, allowed, acts)
+            self._observer.ticked(instant, tick)
         return said
 
     def let_speak(self, node: int, said: Said) -> None:

@@ -62,6 +62,8 @@ class SensorBank:
         self._next = NEVER if sampling is None else sampling
         for line in self._lines:
             waiting = line.waiting
+            if not waiting:
+                continue
             while waiting and waiting[0][0] <= instant:
                 deliveries.append(Delivery(line.robot, line.sensor, waiting.popleft()[1]))
             if waiting:

@@ -126,6 +126,7 @@ def _frame(
     moving = [i for i, name in enumerate(names) if name in program.field.driven]
     own = [i for i, state in enumerate(program.states) if _is_own(program, state)]
     packed = [_packed(command, program) for command in commands]
+    ahead = _looks_ahead(packed, own)
     moved = set(program.field.driven) - {program.field.mode}  # a mode only by guards
     return Frame(
         tape=tape,
@@ -144,8 +145,8 @@ def _frame(
         mode=names.index(program.field.mode) if program.field.mode else -1,
         outputs=len(program.outputs),
         is_map=int(program.field.is_map),
-        looks_ahead=_looks_ahead(packed, own),
-        steady_rates=int(not moved & _read_by(_results(program), program)),
+        looks_ahead=ahead,
+        steady_rates=int(not moved & _read_by(_taken(program, ahead, own), program)),
         steady_guards=int(not moved & _read_by(_guards(program), program)),
         work=_work(tape),
         rest_work=_work(rest),
@@ -166,6 +167,13 @@ def _results(program: Program) -> list[Code | Sum]:
         moves = state.name in program.field.driven
         results.append(rate_of(program, index, Source.TABLES) if moves else still)
     return results
+
+
+def _taken(program: Program, ahead: int, own: Sequence[int]) -> list[Code | Sum]:
+    """The rates of the states that are taken a period on; guards and jumps may read all."""
+    results = _results(program)
+    takes_all = ahead == COMMANDS or program.field.guards or program.noise
+    return results if takes_all else [results[i] for i in own]
 
 
 def _guards(program: Program) -> list[Code | Sum]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, NamedTuple, final
 
+from runtime.world.chipmunk import finder
 from runtime.world.drive import Motor
 from runtime.world.space import SLOP, Space, Touch
 
@@ -82,6 +83,9 @@ class Auditor:
 
     names: of solids and, last, the walls. motors: of robots, the last solids. step: seconds of a
     scenario's step.
+
+    Attributes:
+        depth: the deepest yet (m).
     """
 
     def __init__(
@@ -93,17 +97,16 @@ class Auditor:
         self._first = len(names) - 1 - len(motors)
         self._every = max(round(LOOK / step), 1)
         self._seconds = self._every * step
-        self._depth, self._pair, self._time = 0.0, ("", ""), 0.0
-        self._poses = [(*body.position, body.angle) for body in space.bodies[self._first :]]
+        self.depth, self._pair, self._time = 0.0, ("", ""), 0.0
+        self._find = [finder(body) for body in space.bodies[self._first :]]
+        self._poses = [find() for find in self._find]
         self._looks: tuple[deque[_Look], ...] = tuple(deque(maxlen=LOOKS) for _ in motors)
         self._open: dict[int, Jam] = {}
         self._jams: list[Jam] = []
 
     def note(self, depth: float, time: float) -> None:
-        """Note how deep the worst contact is at `time`."""
-        if depth <= self._depth:
-            return
-        self._depth, self._time = depth, time
+        """Note that the worst contact is deeper than `depth` was before, at `time`."""
+        self.depth, self._time = depth, time
         if depth > SLOP:  # who it is between matters only above what is usual
             worst = max(self._space.touches(), key=lambda touch: touch.depth)
             self._pair = (self._names[worst.a], self._names[worst.b])
@@ -116,14 +119,13 @@ class Auditor:
     def found(self) -> Audit:
         """What was found up to now; a jam that lasts ends now."""
         jams = sorted((*self._jams, *self._open.values()), key=lambda jam: (jam.begin, jam.robot))
-        return Audit(self._depth, self._pair, self._time, tuple(jams))
+        return Audit(self.depth, self._pair, self._time, tuple(jams))
 
     def _look(self, time: float, step: float) -> None:
         held = _held(self._space.touches(), self._first)
         for robot, motor in enumerate(self._motors):
-            body = self._space.bodies[self._first + robot]
-            before, (x, y), heading = self._poses[robot], body.position, body.angle
-            self._poses[robot] = (x, y, heading)
+            before = self._poses[robot]
+            x, y, heading = self._poses[robot] = self._find[robot]()
             forward, left, turn = motor.ramps.now
             impulse, thing = held.get(self._first + robot, (0.0, -1))
             self._looks[robot].append(

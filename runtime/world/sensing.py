@@ -88,8 +88,7 @@ class Senses:
     def advance(self, seconds: float) -> None:
         """Let odometers add what wheels turned in the step that has just passed."""
         for robot, odometer in self._odometers:
-            driven = self._scene.around.commanded(robot)
-            odometer.advance((driven.forward, driven.left, driven.turn), seconds)
+            odometer.advance(self._scene.around.commanded(robot), seconds)
 
     def light(self, robot: int) -> float:
         """Lux at the middle of a robot, half-way up its height; it does not shade itself."""

@@ -125,8 +125,9 @@ class Space:
         -inf where none touch.
         """
         self._step(seconds)
+        found = self._depths.read()
         # A pair that touches at one point has 0 for the other, which is less deep than the skin.
-        return -min(self._depths.read(), default=math.inf) - SLOP
+        return -min(found) - SLOP if found else -math.inf
 
     def fastest(self) -> float:
         """A speed that no point of a body exceeds now (m/s)."""

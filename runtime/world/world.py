@@ -181,7 +181,8 @@ class SimulatedWorld:
             if self._senses is not None:
                 self._senses.advance(seconds)
             self._restless = SETTLED if depth > -math.inf else self._restless - seconds
-            self._auditor.note(depth, self.time + (part + 1) * seconds)
+            if depth > self._auditor.depth:
+                self._auditor.note(depth, self.time + (part + 1) * seconds)
         self._steps += 1
         self._touches = None
         self._auditor.look(self._steps, self.time, seconds)

@@ -55,8 +55,9 @@ class Frame(NamedTuple):
     entry or output; signs: (c,).
     period: seconds. mode: the state that holds it, or -1. outputs: how many. is_map: 0 or 1.
     looks_ahead: what is taken from the state one period on: `NOTHING`, own states where it has its
-    way (`OWN`), or commands too (`COMMANDS`). steady_rates, steady_guards: 1 where no rate, or no
-    guard, reads a state that moves: they are then all along what they were at the sample.
+    way (`OWN`), or commands too (`COMMANDS`). steady_rates, steady_guards: 1 where no rate of a
+    state that is taken, or no guard, reads a state that moves: these are then all along what they
+    were at the sample.
     work, rest_work: the rows of both tapes, literals in place. room: (9, n).
     """
 
