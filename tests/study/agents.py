@@ -26,11 +26,9 @@ from scipy import ndimage
 from runtime.arrays import Array, Booleans
 from runtime.run import run
 from runtime.scenario import Scenario
-from runtime.scheduler.scheduler import Scheduler
-from runtime.scheduler.sensors import SensorBank
+from runtime.start import started
 from runtime.world.model import Pose, Shape
-from runtime.world.sensing import senses_of
-from runtime.world.world import Inhabitant, SimulatedWorld
+from runtime.world.world import SimulatedWorld
 from specc.drawn import write_picture
 from specc.figures.style_names import Style
 from specc.figures.world import draw_world
@@ -109,24 +107,13 @@ def heeding(scenario: Scenario, heed: float) -> Scenario:
     return dataclasses.replace(scenario, robots=robots)
 
 
-def started(scenario: Scenario) -> tuple[SimulatedWorld, Scheduler]:
-    """A world with a scheduler that drives the robot in it, at instant 0; nothing is recorded."""
-    robot = scenario.robots[0]
-    channels = tuple(channel.name for channel in robot.architecture.channels)
-    inhabitants = [Inhabitant(robot.name, robot.body, robot.start.pose, channels)]
-    world = SimulatedWorld(
-        scenario.world, inhabitants, scenario.step, scenario.seed, senses=senses_of
-    )
-    sensors = SensorBank([(robot.name, robot.body)], world, scenario.step, scenario.seed)
-    return world, Scheduler(scenario, world, sensors)
-
-
 def explored(name: str, seed: int, seconds: float) -> Report:
     """What became of one agent in one world."""
-    begun = os.times().user
+    before = os.times().user
     agent = AGENTS[name]
     scenario = scenario_of(agent, seed)
-    world, scheduler = started(scenario)
+    begun = started(scenario)
+    world, scheduler = begun.world, begun.scheduler
     arena = np.array(scenario.world.arena)
     free = free_points(arena, [(t.shape, t.pose) for t in world.layout.things], agent.radius)
     each = round(LOOK / scenario.step)
@@ -140,7 +127,7 @@ def explored(name: str, seed: int, seconds: float) -> Report:
         longest(way_of(places) < TRAVEL),
         longest(box_of(places) < POCKET),
         released(world, scenario),
-        os.times().user - begun,
+        os.times().user - before,
     )
 
 
