@@ -18,6 +18,8 @@ from specc.spec_finding import Found
 from specc.verifying import Verification, program_for_verify
 from specc.verifying_architecture import How, NodeVerdict, NotJudged, examine_nodes
 from verifier.architectures.log import RunLog, open_run
+from verifier.architectures.motion import topics_of_motion, with_motion
+from verifier.architectures.own_doing import topics_of_doing, with_own_doing
 from verifier.architectures.quantities import POSE, quantities_in, topics_of_quantities
 from verifier.architectures.recorded import records_of, topics_of_nodes
 from verifier.architectures.required import examine_requirements, results_on
@@ -134,6 +136,10 @@ def verify_carried(
     required = _required(trace, carried, standard, log)
     how = How(_seed(carried), standard.only, allow_code, only_verdict)
     records = records_of(log, {robot.name: robot.architecture for robot in standard.robots})
+    records |= {
+        robot.name: with_motion(log, robot, with_own_doing(log, robot, records[robot.name]))
+        for robot in standard.robots
+    }
     found = [
         each
         for robot in standard.robots
@@ -149,12 +155,16 @@ def verify_carried(
 
 def _opened(trace: Path, carried: Carried, standard: Standard, reading: Progress | None) -> RunLog:
     topics = dict(topics_of_nodes({r.name: r.architecture for r in standard.robots}))
+    wanted = [
+        each(robot) for robot in standard.robots for each in (topics_of_doing, topics_of_motion)
+    ]
     if standard.requirements:
         things = _things(standard.requirements, carried.robots)
-        for topic, fields in topics_of_quantities(carried.robots, things).items():
-            known = {field.name for field in topics.get(topic, [])}
-            more = [field for field in fields if field.name not in known]
-            topics[topic] = [*topics.get(topic, []), *more]
+        wanted.append(topics_of_quantities(carried.robots, things))
+    for topic, fields in (pair for each in wanted for pair in each.items()):
+        known = {field.name for field in topics.get(topic, [])}
+        more = [field for field in fields if field.name not in known]
+        topics[topic] = [*topics.get(topic, []), *more]
     step = 0.0 if carried.document is None else carried.document.step
     return open_run(trace, topics, step, reading)
 

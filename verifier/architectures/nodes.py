@@ -15,6 +15,8 @@ from runtime.architecture import Architecture, Outside
 from runtime.arrays import Array, Booleans
 from runtime.code import Code
 from runtime.program import Binding, Control, Kind, Program, State, Unit
+from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.source import Source
 from verifier.arbitration.judging import judge_arbiter
 from verifier.arbitration.numbers import Running
 from verifier.arbitration.reader import CHOICE
@@ -28,11 +30,13 @@ from verifier.architectures.telling import (
 from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.report.examination import Examination
+from verifier.report.wording import listed
 from verifier.traces.trace import Loss, Series, Trace
 
 HAS_ITS_WAY: Final = "has_its_way"
 """The signal that `judge_when` of a recorded behavior reads."""
 RECORDED: Final = "recorded"
+UNMEASURED: Final = "is not measured: the robot reckons it by itself, so nothing is said of it"
 
 
 @final
@@ -43,7 +47,8 @@ class NodeRecord:
     times: (T,) seconds, strictly increasing. columns: (T,) SI by the names of what it sampled: of
     a behavior states and controls, of an arbiter reads and controls. held_back: by cause, (T,)
     from which ticks on what the robot does is not, or not fully, its doing. chosen: (T,) of an
-    arbiter, -1 where it chose nothing. losses: of the recording.
+    arbiter, -1 where it chose nothing. losses: of the recording. unmeasured: states of a behavior
+    that nothing in the recording measures: they are its own reckoning.
     """
 
     name: str
@@ -52,6 +57,7 @@ class NodeRecord:
     held_back: dict[str, Booleans] = field(default_factory=dict)
     chosen: Array | None = None
     losses: tuple[Loss, ...] = ()
+    unmeasured: tuple[str, ...] = ()
 
     @property
     def free(self) -> Booleans:
@@ -119,15 +125,35 @@ def examine_behavior(
     """The behavior judged where it had its way; its own `judge_when` is for other logs.
 
     Raises:
-        SpecError: the spec does not say what it would be verified against (V351).
+        SpecError: the spec does not say what it would be verified against (V351), or nothing
+            measures it (V391).
     """
-    judged, trace = _as_log(program, record, source)
+    judged, trace = _as_log(_of_measured(program, record), record, source)
     judgement = judgement_of(judged, trace)
     judgement = replace(
         judgement, report=told_of_node(judgement.report, record.times, record.held_back)
     )
+    notes = (*(f"{name} {UNMEASURED}" for name in record.unmeasured), *judgement.report.notes)
+    judgement = replace(judgement, report=replace(judgement.report, notes=notes))
     made = explain(judged, trace, judgement, _in_silence, only_verdict=only_verdict)
     return NodeExamination(judged, without_logs(made), replace(judgement, study=None))
+
+
+def _of_measured(program: Program, record: NodeRecord) -> Program:
+    """The program without tolerances for what nothing measures.
+
+    Raises:
+        SpecError: then nothing of it is left to be judged (V391).
+    """
+    fidelity = program.fidelity
+    if fidelity is None or not fidelity.tolerance.keys() & set(record.unmeasured):
+        return program
+    kept = {k: v for k, v in fidelity.tolerance.items() if k not in record.unmeasured}
+    if not kept:
+        message = f"{listed(sorted(fidelity.tolerance))} {UNMEASURED}"
+        place = Source(program.source.file, program.source.text)
+        raise SpecError([Diagnostic("V391", Severity.ERROR, message, place, None)])
+    return replace(program, fidelity=replace(fidelity, tolerance=kept))
 
 
 def _as_log(program: Program, record: NodeRecord, source: str) -> tuple[Program, Trace]:
