@@ -39,6 +39,26 @@ def si_value(value: float | str, unit: Unit | None, path: Path, findings: Findin
         return None
 
 
+def si_within(
+    value: float | str,
+    name: str,
+    domain: tuple[float, float],
+    unit: Unit,
+    code: str,
+    path: Path,
+    findings: Findings,
+) -> float | None:
+    """A value in SI for what `name` says, within its domain (SI); outside is a finding: `code`."""
+    found = si_value(value, unit, path, findings)
+    low, high = domain
+    if found is None or low <= found <= high:
+        return found
+    shown = f"[{low / unit.scale:.4g}, {high / unit.scale:.4g}] {unit.text}".removesuffix(" 1")
+    message = f"{value} is outside the domain of '{name}', {shown}"
+    findings.error(code, path, message, "write a value within it")
+    return None
+
+
 def si_limit(value: float | str, unit: Unit | None, path: Path, findings: Findings) -> float | None:
     """A limit of a domain in SI: a number, a quantity, or an expression such as `-pi`."""
     if unit is None or not isinstance(value, str):

@@ -7,7 +7,7 @@ from typing import TypeVar, final
 from compiler.architecture.parts import Part, Parts
 from compiler.findings import Findings
 from compiler.lower_parts import code_of, origin_of
-from compiler.quantities import si_value
+from compiler.quantities import si_within
 from compiler.scope import Scope, checked
 from runtime.arbiter import Arbiter
 from runtime.architecture import (
@@ -146,13 +146,8 @@ def _setting(
         remedy = did_you_mean(control, known) or there_are(known)
         findings.error("S322", path, f"'{control}' is no control of {name}", remedy, key=True)
         return None
-    found = si_value(value, parse_unit(entry.unit.text), path, findings)
-    if found is not None and not entry.low <= found <= entry.high:
-        scale, text = entry.unit.scale, entry.unit.text
-        shown = f"[{entry.low / scale:g}, {entry.high / scale:g}] {text}".removesuffix(" 1")
-        message = f"{value} is outside the domain of '{key}', {shown}"
-        findings.error("S333", path, message, "write a value within it")
-        return None
+    domain, unit = (entry.low, entry.high), parse_unit(entry.unit.text)
+    found = si_within(value, key, domain, unit, "S333", path, findings)
     if found is None:
         return None
     return Setting(parts.index(name), control, found, findings.origin(path))

@@ -9,13 +9,11 @@ from compiler.architecture.bodies import FAR
 from compiler.architecture.parts import Entry, Part, Parts
 from compiler.architecture.signals import why_unknown
 from compiler.findings import Findings
-from compiler.quantities import si_value
+from compiler.quantities import ONE, si_within
 from runtime.architecture import Input, Outside, Signal
 from runtime.program import Kind, Unit
-from spec_schema.dimension import DIMENSIONLESS
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, there_are
-from spec_schema.units import Unit as SpecUnit
 from spec_schema.units import parse_unit
 from spec_schema.wires import Wire
 from spec_schema.wording import quoted
@@ -155,14 +153,8 @@ def _value(
         remedy = f"write one of {', '.join(owned)}" if owned else "write SENSOR.READING, or a value"
         findings.error("S330", path, f"{quoted(value)} is no signal", remedy)
         return None
-    unit = SpecUnit("1", 1.0, DIMENSIONLESS) if entry.unit is None else parse_unit(entry.unit.text)
-    found = si_value(value, unit, path, findings)
-    if found is not None and not entry.low <= found <= entry.high:
-        shown = _domain(entry.low, entry.high, entry.unit)
-        message = f"{value} is outside the domain of '{entry.name}', {shown}"
-        findings.error("S333", path, message, "write a value within it")
-        return None
-    return found
+    unit = ONE if entry.unit is None else parse_unit(entry.unit.text)
+    return si_within(value, entry.name, (entry.low, entry.high), unit, "S333", path, findings)
 
 
 def _choice(entry: Entry, value: float | str, path: Path, findings: Findings) -> float | None:
@@ -226,10 +218,6 @@ def _agree_discrete(entry: Entry, signal: Signal, path: Path, findings: Findings
     message = f"'{signal.name}' is {told}, and '{entry.name}' is {', '.join(entry.values)}"
     findings.error("S335", path, message, "give both the same values in the same order")
     return False
-
-
-def _domain(low: float, high: float, unit: Unit | None) -> str:
-    return f"[{_shown(low, unit)}, {_shown(high, unit)}]"
 
 
 def _range(low: float, high: float, unit: Unit | None) -> str:

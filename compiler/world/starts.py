@@ -2,7 +2,7 @@
 
 from compiler.architecture.parts import is_read
 from compiler.findings import Findings
-from compiler.quantities import si_value
+from compiler.quantities import si_within
 from runtime.program import State
 from runtime.scenario import Robot
 from spec_schema.places import Path
@@ -46,11 +46,5 @@ def _value(state: State, value: float | str, path: Path, findings: Findings) -> 
         remedy = did_you_mean(str(value), state.values) or there_are(state.values)
         findings.error("S328", path, f"'{state.name}' has no value '{value}'", remedy)
         return None
-    found = si_value(value, parse_unit(state.unit.text), path, findings)
-    if found is not None and not state.low <= found <= state.high:
-        scale, text = state.unit.scale, state.unit.text
-        shown = f"[{state.low / scale:g}, {state.high / scale:g}] {text}".removesuffix(" 1")
-        message = f"{value} is outside the domain of '{state.name}', {shown}"
-        findings.error("S328", path, message, "write a value within it")
-        return None
-    return found
+    domain, unit = (state.low, state.high), parse_unit(state.unit.text)
+    return si_within(value, state.name, domain, unit, "S328", path, findings)
