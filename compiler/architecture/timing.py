@@ -48,16 +48,26 @@ def check_timing(
 ) -> None:
     """Findings for nodes that are too slow, and for times that no common step divides."""
     for part in parts.nodes.values():
-        if part.program is None or part.period == 0.0:
+        program = _field_of(part)
+        if program is None or part.period == 0.0:
             continue
-        if part.program.field.is_map:
-            _check_map(part, part.program, findings)
-        elif not _is_known(part.program):
-            _tell_unchecked(part, part.program, findings)
+        if program.field.is_map:
+            _check_map(part, program, findings)
+        elif not _is_known(program):
+            _tell_unchecked(part, program, findings)
         else:
-            fastest = fastest_of(part.program, reach_of(part, inputs, choices, parts))
-            _check_lag(part, part.program, fastest, findings)
+            unset = {
+                control.name: (control.default, control.default) for control in program.controls
+            }
+            reach = reach_of(part, inputs, choices, parts)
+            fastest = fastest_of(program, unset | reach if part.arbiter else reach)
+            _check_lag(part, program, fastest, findings)
     _check_common_step(parts, findings)
+
+
+def _field_of(part: Part) -> Program | None:
+    """What has a field in a node: a behavior, or the plan of an arbiter, which is one, too."""
+    return part.program if part.arbiter is None else part.arbiter.plan
 
 
 def _check_map(part: Part, program: Program, findings: Findings) -> None:

@@ -196,6 +196,44 @@ def test_a_node_is_late_by_the_rate_of_its_field(make: Make) -> None:
     assert codes(make({"avoid": late})) == {"S353"}
 
 
+PLAN = """
+specc: 1
+kind: behavior
+name: settling
+state:
+  ahead:
+    {unit: m, domain: [0, 2], role: both, relates: {agent: front, environment: a wall}}
+  doing:
+    {kind: discrete, values: [x, y], role: both, relates: {agent: base, environment: a wall}}
+control: {k: {unit: 1/s, domain: [1, 900], default: 10}}
+constants: {goal: {value: 0.5, unit: m}}
+field:
+  modes:
+    of: doing
+    each:
+      x: {formula: {ahead: -k * (ahead - goal)}, leave: [{when: ahead <= goal, to: y}]}
+      y: {formula: {ahead: -k * (ahead - goal)}}
+"""
+
+
+def test_a_plan_is_late_by_the_rate_of_its_field_as_any_behavior_is(
+    make: Make, tmp_path: Path
+) -> None:
+    """Its rate is 10/s, as no one sets k: so period + response_time may be 50 ms."""
+    (tmp_path / "settling.yaml").write_text(PLAN, encoding="utf-8")
+    (tmp_path / "planned.yaml").write_text(
+        "specc: 1\nkind: arbiter\nname: planned\nreads: {ahead: {unit: m, domain: [0, 2]}}\n"
+        "choices: [x, y]\nby: {plan: settling.yaml}\n",
+        encoding="utf-8",
+    )
+    veer = node("veer", "sense: {heading: odom.heading}")
+    rest = "sense: {ahead: ahead.range}, choices: {x: [veer], y: []}"
+
+    for period, found in (("50 ms", set()), ("51 ms", {"S353"})):
+        plan = f"arbiter: planned.yaml, period: {period}, {rest}"
+        assert codes(make({"veer": veer, "plan": plan})) == found
+
+
 def test_all_mistakes_are_told_at_once_each_in_its_file(make: Make) -> None:
     path = make(
         {
