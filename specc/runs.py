@@ -14,6 +14,7 @@ from specc.verifying import Clock, Verification, program_for_verify, verify_by
 from specc.verifying_architecture import NotJudged
 from specc.verifying_recording import REQUIREMENTS, verify_carried
 from verifier.arbitration.together import pooled_decisions
+from verifier.architectures.telling import without_logs
 from verifier.fidelity.together import pooled
 from verifier.report.examination import Examination
 from verifier.report.report import WORST_FIRST, Report, Verdict
@@ -236,7 +237,7 @@ def _pool(members: Sequence[Verification]) -> Pool:
     if part := members[0].part:
         report = examination.report
         trace = replace(report.trace, source=f"{report.trace.source}: {part}")
-        examination = replace(examination, report=replace(report, trace=trace))
+        examination = without_logs(replace(examination, report=replace(report, trace=trace)))
     return Pool(tuple(members), examination)
 
 

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import specc
@@ -17,6 +18,7 @@ from specc.loading import compile_scenario_spec
 from specc.runs import verifications, verify_together
 from specc.simulating import Simulation, simulate_scenario
 from specc.texts.runs import runs_table
+from specc.verifying_recording import RunVerification
 from verifier.report.report import Verdict
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -317,3 +319,49 @@ def test_a_torn_recording_tells_its_losses_at_every_node(recording: Path, tmp_pa
     with pytest.raises(SpecError) as error:
         specc.verify_run(torn, strict=True)
     assert error.value.diagnostics[0].code == "V313"
+
+
+@pytest.fixture(scope="module")
+def avoiding(library: Path) -> Simulation:
+    """A run in which it has to avoid something, and the lamp is hidden for a while."""
+    return simulated(library / "scenarios" / "first_light.yaml", duration=30.0, seed=9)
+
+
+def test_a_state_that_is_only_reckoned_is_judged_by_how_the_body_moved(
+    avoiding: Simulation, tmp_path: Path
+) -> None:
+    run = avoiding.run
+    own = specc.verify_run(kept(run, tmp_path / "own.mcap"), only_verdict=True)
+    poses = run.world.poses.copy()
+    poses[:, -1, 2] *= 0.5
+    slow = replace(run, world=replace(run.world, poses=poses))
+    turned = specc.verify_run(kept(slow, tmp_path / "slow.mcap"), only_verdict=True)
+
+    def departure(found: RunVerification) -> float:
+        results = found.node("r.avoid").report.variables
+        return next(each.declared.departure for each in results if each.name == "heading")
+
+    # It spins by 1.2 rad/s, which is told, and half of which was measured: 0.3 rad in 0.5 s.
+    assert departure(own) < 0.01
+    assert departure(turned) == pytest.approx(0.3, abs=0.03)
+
+
+def test_what_went_on_before_and_what_was_not_seen_is_not_a_behaviors_doing(
+    avoiding: Simulation, tmp_path: Path
+) -> None:
+    run = avoiding.run
+    seek = specc.verify_run(kept(run, tmp_path / "run.mcap"), only_verdict=True).node("r.seek")
+
+    quantities = run.signals
+    seen, turn = quantities["r.beacon.seen"], quantities["r.seek.turn"]
+    for start in seek.report.starts:
+        inside = (seen.times > start) & (seen.times < start + 1.0)
+        assert np.all(seen.values[inside] == 1.0), start
+    # From the first judged instant on, the body turns as this node asks, 0.1 s before or so.
+    real = quantities["r.turn"]
+    asked = np.interp(seek.report.starts - 0.1, turn.times, turn.values)
+    got = np.interp(seek.report.starts, real.times, real.values)
+    assert np.abs(asked - got).max() < 0.2
+    causes = {each.cause for each in seek.report.exclusions}
+    assert "the body still did what it was told before" in causes
+    assert "bearing: beacon was not seen (the last reading stands)" in causes

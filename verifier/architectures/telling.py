@@ -25,6 +25,8 @@ OF_LOGS: Final = re.compile(
 )
 FITTING: Final = re.compile(r" \(`specc fit [^`]*` edits it\)")
 
+MENDING: Final = "mend the robot"
+
 
 def told_of_node(report: Report, times: Array, held_back: dict[str, Booleans]) -> Report:
     """The report, with what kept the node from having its way at its ticks (T,), by cause."""
@@ -41,6 +43,8 @@ def without_logs(examination: Examination) -> Examination:
     report = examination.report
     kept = [FITTING.sub("", each) for each in report.advice]
     advice = tuple(each for each in kept if not OF_LOGS.search(each) and "specc fit" not in each)
+    if report.verdict is not Verdict.FAIL:  # what may explain a chance departure mends nothing
+        advice = tuple(each for each in advice if not each.startswith(MENDING))
     diagnosis = examination.diagnosis if report.verdict is Verdict.FAIL else None
     return replace(examination, report=replace(report, advice=advice), diagnosis=diagnosis)
 

@@ -103,7 +103,7 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
     if figure.interval.high > limit:
         return (
             f"{departs}, and the 95 % interval is {_interval(figure.interval, unit)}"
-            f" ({figure.windows} overlapping windows)"
+            f" ({_windows(figure.windows)})"
         )
     open_ones = [r for r in result.regions if r.standing is not Standing.WITHIN]
     region = max(open_ones, key=lambda r: max(abs(r.interval.low), abs(r.interval.high)))
@@ -254,3 +254,7 @@ def _declared(evidence: Evidence, result: VariableResult) -> tuple[Array, Array]
 
 def _interval(interval: Interval, unit: Unit) -> str:
     return span(interval.low, interval.high, unit)
+
+
+def _windows(count: int) -> str:
+    return "1 window" if count == 1 else f"{count} overlapping windows"
