@@ -15,7 +15,7 @@ from runtime.arrays import Array, frozen
 from runtime.interpolation import lookup, tabulate
 from runtime.table import Axis, Method, Table
 from spec_schema.behavior import BehaviorSpec
-from spec_schema.field_forms import Grid
+from spec_schema.field_grid import Grid
 
 
 def grid_sampler(

@@ -8,7 +8,7 @@ import numpy as np
 from compiler.declare import Declarations
 from compiler.ranges import range_of
 from runtime.arrays import Array, frozen
-from spec_schema.field_forms import Grid
+from spec_schema.field_grid import Grid
 
 
 def read_grid(path: Path, form: Grid, declared: Declarations, drives: tuple[str, ...]) -> Array:

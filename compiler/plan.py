@@ -31,7 +31,8 @@ from spec_schema.expressions.bounds import bounds
 from spec_schema.expressions.printers.text import to_text
 from spec_schema.expressions.rewrite import names_in, simplify, substitute
 from spec_schema.expressions.tree import Expr, Number
-from spec_schema.field_forms import Arrows, Grid, Module
+from spec_schema.field_forms import Arrows, Module
+from spec_schema.field_grid import Grid
 
 
 @final

@@ -11,7 +11,8 @@ from runtime.program import Role
 from spec_schema.arbiter import ArbiterSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.expressions.rewrite import names_in
-from spec_schema.field_forms import Arrows, Form, Grid, Module
+from spec_schema.field_forms import Arrows, Form, Module
+from spec_schema.field_grid import Grid
 from spec_schema.field_modes import Modes
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, there_are

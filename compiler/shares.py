@@ -13,7 +13,8 @@ from compiler.references import drives_of
 from compiler.tabulate import Sampler
 from runtime.arrays import Array, frozen
 from spec_schema.behavior import BehaviorSpec
-from spec_schema.field_forms import Arrows, Grid
+from spec_schema.field_forms import Arrows
+from spec_schema.field_grid import Grid
 from spec_schema.load import Loaded
 from spec_schema.places import Path
 

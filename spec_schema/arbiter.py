@@ -5,8 +5,7 @@ from typing import Annotated, Literal, Self, TypeAlias, final
 
 from pydantic import Field, Strict, model_validator
 
-from spec_schema.field_forms import repeated
-from spec_schema.mistake import Mistake, refuse
+from spec_schema.mistake import Mistake, refuse, repeated
 from spec_schema.trace_mapping import TraceSpec
 from spec_schema.value_types import (
     Callee,

@@ -1,10 +1,12 @@
 """A mistake that a model finds in its own data, on its way through pydantic to a diagnostic."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, final
 
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError, ValidationError
+
+from spec_schema.wording import quoted
 
 TYPE = "mistakes"
 """The pydantic error type that carries mistakes."""
@@ -30,6 +32,16 @@ def refuse(mistakes: Iterable[Mistake]) -> None:
     found = tuple(mistakes)
     if found:
         raise _error(found)
+
+
+def repeated(names: tuple[str, ...], key: str) -> Iterator[Mistake]:
+    """The names that stand twice in the list under `key`."""
+    seen: set[str] = set()
+    for index, name in enumerate(names):
+        if name in seen:
+            message = f"{quoted(name)} stands twice in '{key}'"
+            yield Mistake("S112", message, "remove one", (key, index))
+        seen.add(name)
 
 
 def together(error: ValidationError, mistakes: Iterable[Mistake]) -> ValidationError:

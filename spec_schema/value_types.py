@@ -291,3 +291,6 @@ Callee: TypeAlias = Annotated[
 
 Names: TypeAlias = Annotated[tuple[Name, ...], Strict(strict=False), Field(min_length=1)]
 """Some names, in order."""
+
+Vector: TypeAlias = Annotated[tuple[Number, ...], Strict(strict=False), Field(min_length=1)]
+"""Some numbers, in order."""

@@ -9,7 +9,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from spec_schema.behavior import BehaviorSpec, TableSpec
 from spec_schema.diagnostics import SpecError
-from spec_schema.field_forms import Arrows, FieldSpec, Formula, Grid, Module, Step
+from spec_schema.field_forms import Arrows, FieldSpec, Formula, Module, Step
+from spec_schema.field_grid import Grid
 from spec_schema.grid_values import GridValues
 from spec_schema.kinds import MODELS
 from spec_schema.load import load_source
