@@ -13,7 +13,7 @@ from runtime.program import Unit
 from runtime.requirement import Operator
 from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.wording import listed, number, quantity, suffix
-from verifier.requirements.course import Course
+from verifier.requirements.course import Course, negated
 from verifier.requirements.robustness import Part
 from verifier.requirements.signals import Signal, Span, names_in
 from verifier.requirements.witness import Deciding, deciding, lowest_within, passages
@@ -82,11 +82,23 @@ def _of_until(result: RequirementResult, told: Told) -> str:
         return f": {come} came {_at(reached, came, told, is_upper=False)}{tail}"
     came = _first(reached.upper, first, end, is_met=True)
     broke = _first(holds.upper, told.span.start, end, is_met=False)
-    waited = f"{come} never came" if came is None else f"{come} came only at {_time(came, told)} s"
+    waited = f"{come} came only at {_time(came, told)} s" if came is not None else ""
+    waited = waited or f"{come} never came{_nearest(reached, first, end, told)}"
     if broke is None:
         return f"{_by(result)}: {waited}"
     when = _at(holds, broke, told, is_upper=True)
     return f": {hold} no longer held {when}, and {waited}"
+
+
+def _nearest(part: Part, first: float, last: float, told: Told) -> str:
+    """When what never held was the nearest to it, in brackets; nothing where that says nothing."""
+    if last < first:
+        return ""
+    time = lowest_within(negated(part.upper), first, last)
+    decides = deciding(part, time, told.span.end, is_upper=True)
+    if decides is None or _is_discrete(decides, told):
+        return ""
+    return f" (nearest at {_when_and_where(decides, told)})"
 
 
 def _at(part: Part, time: float, told: Told, *, is_upper: bool) -> str:

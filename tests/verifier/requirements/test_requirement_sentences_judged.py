@@ -121,13 +121,17 @@ def test_what_is_discrete_is_told_by_name_and_without_a_number(sentence: str, sa
         ),
         (
             "r.clearance > 5 cm until r.clearance > 80 cm",
-            "violated by 30 cm: r.clearance > 80 cm never came",
+            (
+                "violated by 30 cm: r.clearance > 80 cm never came "
+                "(nearest at 0 s, where r.clearance is 50 cm)"
+            ),
         ),
         (
             "r.clearance > 20 cm until r.clearance > 80 cm",
             (
                 "violated: r.clearance > 20 cm no longer held at 7.05 s, "
-                "where r.clearance is 20 cm, and r.clearance > 80 cm never came"
+                "where r.clearance is 20 cm, and r.clearance > 80 cm never came "
+                "(nearest at 0 s, where r.clearance is 50 cm)"
             ),
         ),
         (
