@@ -38,11 +38,8 @@ class Gathering:
 
     def ticked(self, instant: int, tick: Tick) -> None:
         """Keep a tick."""
-        copied = tick._replace(
-            register=tick.register.copy(),
-            outputs=tick.outputs.copy(),
-            commands=tick.commands.copy(),
-        )
+        robot, node, register, outputs, commands, allowed, acts = tick
+        copied = Tick(robot, node, register.copy(), outputs.copy(), commands.copy(), allowed, acts)
         self._notes[tick.robot].nodes[tick.node].append((instant, copied))
         self._also.ticked(instant, tick)
 

@@ -97,19 +97,21 @@ class ArbiterNode:
     ) -> None:
         self.inputs, self._arbiter, self._reward = inputs, arbiter, reward
         self._conditions = Conditions(compiled, [output.code for output in compiled.outputs])
-        self._entries = [inputs.entries.index(name) for name in entries_of(compiled)]
+        entries = [inputs.entries.index(name) for name in entries_of(compiled)]
+        self._entries = np.array(entries, dtype=np.int64)
+        self._in_order = entries == list(range(len(inputs.entries)))
         self._has_decided = False
         self._numbers: Array = np.zeros(len(compiled.choices))
 
     def tick(self, board: Array, time: float, *, allowed: bool) -> Said:  # noqa: ARG002  # it decides
         """Sample and decide; a choice of -1 where none holds."""
         read, acts = self.inputs.read(board)
-        reads = np.ascontiguousarray(read[self._entries])
+        reads = read if self._in_order else read[self._entries]
         if self._reward is not None and self._has_decided:
             self._arbiter.learn(self._reward())
         self._has_decided = True
         self._numbers = self._arbiter.decide(reads, time)
-        largest = int(np.argmax(self._numbers))
+        largest = int(self._numbers.argmax())
         choice = float(largest) if self._numbers[largest] > 0.0 else -1.0
         outputs = np.concatenate([self._conditions.at(reads), self._numbers, [choice]])
         return Said(reads, outputs, NOTHING, acts, () if acts else (What.OUTSIDE,))
