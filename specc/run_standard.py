@@ -17,9 +17,9 @@ from spec_schema.diagnostics import SpecError
 from spec_schema.suggest import did_you_mean
 from specc.faults import fault
 from specc.loading import kind_of, load_architecture, load_scenario
-from verifier.architectures.document import ScenarioDocument, attached_scenario
+from verifier.architectures.document import SUFFIX, ScenarioDocument, attached_scenario
 from verifier.report.report import SpecIdentity
-from verifier.traces.files.open_log import attached_programs
+from verifier.traces.files.open_log import attached_programs, attachments, damaged_attachments
 
 DAMAGED: Final = "V332"
 OTHER: Final = "V392"
@@ -82,6 +82,7 @@ def carried_by(trace: Path) -> Carried | None:
     """
     if trace.suffix.lower() != ".mcap" or not trace.is_file():
         return None
+    _refuse_damaged(trace)
     robots = []
     for name, data in attached_programs(trace):
         try:
@@ -98,6 +99,20 @@ def carried_by(trace: Path) -> Carried | None:
     except ArtifactError as error:
         message = f"the attached scenario can't be used: {error}"
         raise fault(DAMAGED, trace, message, "record it again") from error
+
+
+def _refuse_damaged(trace: Path) -> None:
+    """Stops where an attachment of a scenario's recording is damaged: what it says would be missed.
+
+    Raises:
+        SpecError: one is (V332).
+    """
+    names = damaged_attachments(trace)
+    known = [*names, *(name for name, _ in attachments(trace, SUFFIX))]
+    judged = [name for name in names if name.endswith((SUFFIX, ".specc"))]
+    if judged and any(name.endswith(SUFFIX) for name in known):
+        message = f"the attached {judged[0]} can't be used: its checksum does not fit"
+        raise fault(DAMAGED, trace, message, "record it again")
 
 
 def standard_of(

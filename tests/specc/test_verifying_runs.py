@@ -365,3 +365,20 @@ def test_what_went_on_before_and_what_was_not_seen_is_not_a_behaviors_doing(
     causes = {each.cause for each in seek.report.exclusions}
     assert "the body still did what it was told before" in causes
     assert "bearing: beacon was not seen (the last reading stands)" in causes
+
+
+@pytest.mark.parametrize("name", ["first_light.scenario.json", "r.specc"])
+def test_a_damaged_attachment_is_told_by_its_name(
+    recording: Path, tmp_path: Path, name: str
+) -> None:
+    data = bytearray(recording.read_bytes())
+    place = data.index(name.encode()) if name != "r.specc" else data.index(b"\x07\0\0\0r.specc")
+    data[place + 200] ^= 0x55
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data)
+
+    with pytest.raises(SpecError) as error:
+        specc.verify_run(damaged)
+    (found,) = error.value.diagnostics
+    assert found.code == "V332"
+    assert found.message.startswith(f"the attached {name} can't")

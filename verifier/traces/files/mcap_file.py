@@ -56,7 +56,18 @@ def find_attachments(path: Path, suffix: str) -> list[tuple[str, bytes]]:
     Only heads of records are read on the way, no message. One whose checksum is wrong is not
     returned.
     """
-    found = []
+    bodies = _attachment_bodies(path)
+    found = [each for each in map(_attachment, bodies) if each is not None]
+    return [(each.name, each.data) for each in found if each.name.endswith(suffix)]
+
+
+def find_damaged_attachments(path: Path) -> list[str]:
+    """The names of attachments whose checksum is wrong, as far as they can be read."""
+    return [_name_in(body) for body in _attachment_bodies(path) if _attachment(body) is None]
+
+
+def _attachment_bodies(path: Path) -> list[bytes]:
+    bodies = []
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         position = len(MAGIC)
         while position + HEAD.size <= len(data):
@@ -64,10 +75,14 @@ def find_attachments(path: Path, suffix: str) -> list[tuple[str, bytes]]:
             begin = position + HEAD.size
             position = begin + length
             if opcode == Opcode.ATTACHMENT and position <= len(data):
-                attachment = _attachment(data[begin:position])
-                if attachment and attachment.name.endswith(suffix):
-                    found.append((attachment.name, attachment.data))
-    return found
+                bodies.append(data[begin:position])
+    return bodies
+
+
+def _name_in(body: bytes) -> str:
+    """The name that stands behind two times of 8 bytes, after its length."""
+    size = int.from_bytes(body[16:20], "little")
+    return body[20 : 20 + size].decode("utf-8", "replace")
 
 
 @final

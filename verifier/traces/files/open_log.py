@@ -15,7 +15,12 @@ from verifier.traces.files.bag2_file import is_sqlite, read_bag2
 from verifier.traces.files.csv_file import read_csv
 from verifier.traces.files.csv_layout import is_csv
 from verifier.traces.files.log import LogFile, MessageLog, Messages, Progress, Wanted
-from verifier.traces.files.mcap_file import find_attachments, is_mcap, read_mcap
+from verifier.traces.files.mcap_file import (
+    find_attachments,
+    find_damaged_attachments,
+    is_mcap,
+    read_mcap,
+)
 from verifier.traces.files.packed_file import ELSEWHERE, is_packed, reason, unpack_file
 from verifier.traces.files.ulog_file import is_ulog, read_ulog
 from verifier.traces.trace import Loss
@@ -69,6 +74,17 @@ def attachments(path: Path, suffix: str) -> list[tuple[str, bytes]]:
         if path.is_dir() or not is_mcap(_head(path)):
             return []
         return find_attachments(path, suffix)
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def damaged_attachments(path: Path) -> list[str]:
+    """Names of what an MCAP file carries and that was cut or altered.
+
+    Raises SpecError V301.
+    """
+    try:
+        return find_damaged_attachments(path) if is_mcap(_head(path)) else []
     except OSError as error:
         raise _unreadable(path, error) from error
 
