@@ -70,12 +70,17 @@ def verify_each(
     if isinstance(named, Path) and not is_of_runs(named):
         program_of(named)
     how = _How(named, clock, program_of, allow_code, strict, only_verdict, reading)
-    for trace in traces:
+    for trace in distinct(traces):
         tell = None if progress is None else partial(progress, str(trace))
         try:
             yield from _judged(Path(trace), how, tell)
         except SpecError as error:
             yield Unusable(str(trace), error)
+
+
+def distinct(traces: Sequence[Path | str]) -> tuple[Path | str, ...]:
+    """The files, each once, however often and by whatever path it is named."""
+    return tuple({Path(each).resolve(): each for each in reversed(traces)}.values())[::-1]
 
 
 @final

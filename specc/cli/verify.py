@@ -67,9 +67,12 @@ def verify(
 
     `specc verify drive.mcap --format json > verdict.json`
     """
-    from specc.runs import verify_each
+    from specc.runs import distinct, verify_each
 
     _refuse_early(output)
+    given, traces = traces, [Path(each) for each in distinct(traces)]
+    if len(traces) < len(given):
+        say("a recording that is named more than once counts once", "bold yellow")
     warmed(spec)
     judge = partial(
         verify_each,
