@@ -1,8 +1,9 @@
 """Three tasks, each done by three paradigms with the same behaviors, and by chance.
 
 Run it: `python -m tests.study.paradigms [light patrol tidy] [--first 1000] [--worlds 50]`.
-A world is left as soon as it is decided whether all that the scenario requires holds; that this is
-what its sentences say is tested in tests/specc/test_paradigms.py.
+A world is decided as soon as it is known whether all that the scenario requires holds; that this
+is what its sentences say is tested in tests/specc/test_paradigms.py. It is left then, but for the
+light: there it runs to its end, so that a touch after the light was found is told as well.
 Seeds from 2000 on were for building; docs/paradigms.md says which were kept for the tables.
 """
 
@@ -50,11 +51,18 @@ class Outcome(NamedTuple):
     time: float
     contacts: int
 
+    @property
+    def never_touched(self) -> bool:
+        """Whether it succeeded and touched nothing, neither before nor after."""
+        return self.succeeded and self.contacts == 0
+
 
 class Task(Protocol):
     """What is to be done in one world."""
 
     is_the: str
+    goes_on: bool
+    """Whether the world goes on after that, and is asked whether anything was touched."""
 
     def decided(self, world: SimulatedWorld, time: float, used: float) -> bool | None:
         """Whether it has succeeded or failed by now; None where that is open."""
@@ -69,7 +77,7 @@ class Task(Protocol):
 class FindLight:
     """Touch nothing until it is in the light."""
 
-    is_the = "until it is in the light"
+    is_the, goes_on = "until it is in the light", True
 
     def __init__(self, scenario: Scenario) -> None:
         sensors = scenario.robots[0].body.sensors
@@ -90,7 +98,7 @@ class FindLight:
 class Patrol:
     """Be at each post again and again, touch nothing, and never let the battery go flat."""
 
-    is_the = "from a post to the other"
+    is_the, goes_on = "from a post to the other", False
 
     def __init__(self, scenario: Scenario) -> None:
         self._duration = scenario.duration
@@ -118,7 +126,7 @@ class Patrol:
 class Tidy:
     """Push every crate to a wall."""
 
-    is_the = "until all crates are at walls"
+    is_the, goes_on = "until all crates are at walls", False
 
     def __init__(self, scenario: Scenario) -> None:
         self._room = np.array(scenario.world.arena).max(axis=0)
@@ -187,7 +195,7 @@ def hashes_of(task: str, paradigm: str) -> dict[str, str]:
 
 
 def outcome(task: str, paradigm: str, seed: int, duration: float | None = None) -> Outcome:
-    """What becomes of a robot in one world; it ends where that is decided.
+    """What becomes of a robot in one world; it ends where that is decided, or at its end.
 
     duration: seconds, in the place of the scenario's own.
     """
@@ -198,31 +206,43 @@ def outcome(task: str, paradigm: str, seed: int, duration: float | None = None) 
     begun = started(scenario, observer=account)
     world, scheduler = begun.world, begun.scheduler
     judge = TASKS[task](scenario)
-    contacts, touches = 0, False
+    contacts, touches, when = 0, False, math.nan
+    verdict: bool | None = None
     for _ in range(round(scenario.duration / scenario.step / LOOK) + 1):
         touched, touches = touches, world.clearance(0) <= 0.0
         contacts += touches and not touched
-        succeeded = judge.decided(world, scheduler.time, account.used)
-        if succeeded is not None:
-            return Outcome(
-                succeeded, judge.time(scheduler.time) if succeeded else math.nan, contacts
-            )
+        if verdict is None:
+            verdict = judge.decided(world, scheduler.time, account.used)
+            when = judge.time(scheduler.time) if verdict else math.nan
+        if verdict is not None and not judge.goes_on:
+            break
         scheduler.run(LOOK)
-    return Outcome(succeeded=False, time=math.nan, contacts=contacts)
+    return Outcome(bool(verdict), when, contacts)
 
 
-def line_of(paradigm: str, found: Sequence[Outcome]) -> str:
-    """A line of the table: success with its 95 % interval (Wilson), times, contacts."""
+def share_of(good: int, worlds: int) -> str:
+    """Two cells of the table: how many, and their share with its 95 % interval (Wilson)."""
+    sure = binomtest(good, worlds).proportion_ci(method="wilson")
+    return (
+        f"{good} of {worlds} | {100 * good / worlds:.0f} % "
+        f"({100 * sure.low:.0f} to {100 * sure.high:.0f} %)"
+    )
+
+
+def line_of(paradigm: str, found: Sequence[Outcome], *, goes_on: bool) -> str:
+    """A line of the table: success, where asked for success without any touch, times, contacts."""
     good = [each for each in found if each.succeeded]
-    sure = binomtest(len(good), len(found)).proportion_ci(method="wilson")
+    untouched = sum(each.never_touched for each in found)
+    shares = share_of(len(good), len(found))
+    if goes_on:
+        shares += f" | {share_of(untouched, len(found))}"
     times = np.array([each.time for each in good])
     times = times[np.isfinite(times)]
     middle = f"{np.median(times):.0f} s" if times.size else "-"
     range_ = f"{times.min():.0f} to {times.max():.0f} s" if times.size else "-"
     touched = np.array([each.contacts for each in found])
     return (
-        f"| {paradigm} | {len(good)} of {len(found)} | {100 * len(good) / len(found):.0f} % "
-        f"({100 * sure.low:.0f} to {100 * sure.high:.0f} %) | {middle} | {range_} "
+        f"| {paradigm} | {shares} | {middle} | {range_} "
         f"| {np.mean(touched):.1f} | {np.count_nonzero(touched)} |"
     )
 
@@ -234,18 +254,24 @@ def table(task: str, first: int, worlds: int, workers: int) -> None:
     for name, digest in sorted(hashes[PARADIGMS[0]].items()):
         others = [each.get(name) == digest for each in hashes.values()]
         print(f"  {name:14} {digest}  {'the same' if all(others) else 'NOT THE SAME'} in all four")
-    print(
-        f"| paradigm | success | share (95 %) | median time {TASKS[task].is_the} | from, to |",
-        end="",
-    )
-    print(" contacts a world | worlds with contact |\n|---|---|---|---|---|---|---|", flush=True)
+    goes_on = TASKS[task].goes_on
+    strictly = " | and untouched to the end | share (95 %)" if goes_on else ""
+    print(f"| paradigm | success | share (95 %){strictly}", end="")
+    print(f" | median time {TASKS[task].is_the} | from, to", end="")
+    print(" | contacts a world | worlds with contact |")
+    print("|---" * (9 if goes_on else 7) + "|", flush=True)
     seeds = range(first, first + worlds)
     with ProcessPoolExecutor(workers) as pool:
         for paradigm in PARADIGMS:
             found = list(pool.map(outcome, [task] * worlds, [paradigm] * worlds, seeds))
             failed = [s for s, each in zip(seeds, found, strict=True) if not each.succeeded]
-            print(line_of(paradigm, found), flush=True)
+            print(line_of(paradigm, found, goes_on=goes_on), flush=True)
             print(f"  failed: {failed}", flush=True)
+            late = [
+                s for s, each in zip(seeds, found, strict=True) if each.succeeded and each.contacts
+            ]
+            if goes_on:
+                print(f"  touched after it: {late}", flush=True)
 
 
 def main() -> None:
