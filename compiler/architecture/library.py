@@ -92,7 +92,10 @@ class Library:
             self._tell_missing(file, text, path, findings)
             return None
         examined = self._read(file)
-        if examined is None or examined.loaded is None:
+        if examined is None:
+            return None
+        if examined.loaded is None:
+            self._refuse(file, examined.mistakes)
             return None
         if examined.loaded.spec.kind != kind:
             is_ = with_article(examined.loaded.spec.kind)
