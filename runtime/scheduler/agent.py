@@ -9,13 +9,12 @@ from runtime import chance
 from runtime.arbitration.build import arbiter_of
 from runtime.architecture import Architecture, Node
 from runtime.arrays import Array, Booleans
-from runtime.program import Kind
 from runtime.scenario import Robot, Scenario
 from runtime.scheduler.acting import Acting
 from runtime.scheduler.board import Board
 from runtime.scheduler.channels import Resolver
 from runtime.scheduler.clock import whole_steps
-from runtime.scheduler.inputs import ANY, Inputs
+from runtime.scheduler.inputs import Inputs, domain_of
 from runtime.scheduler.nodes import (
     ArbiterNode,
     BehaviorNode,
@@ -184,11 +183,8 @@ def _arbiter(
     learner: Learner | None,
 ) -> ArbiterNode:
     compiled = architecture.arbiters[node.arbiter]
-    reads = {
-        read.name: ANY if read.kind is Kind.PERIODIC else (read.low, read.high)
-        for read in compiled.reads
-    }
-    controls = {control.name: (control.low, control.high) for control in compiled.controls}
+    reads = {read.name: domain_of(read.kind, read.low, read.high) for read in compiled.reads}
+    controls = {control.name: (control.low, control.high, 0.0) for control in compiled.controls}
     inputs = Inputs(node.inputs, {**reads, **controls})
     arbiter = learner.arbiter if learner else arbiter_of(compiled, name, node.period, code)
     arbiter.reset(scenario.seed)

@@ -12,7 +12,7 @@ from runtime.direct_calls import machine_code
 from runtime.flow import Source, rate_of
 from runtime.kernels.tape import LANES, Tape
 from runtime.program import Kind, Program, Role, State
-from runtime.scheduler.inputs import ANY, Inputs
+from runtime.scheduler.inputs import ANY, Domain, Inputs, domain_of
 from runtime.scheduler.kernels.tick import (
     AS_ENTRY,
     AS_NEXT,
@@ -110,10 +110,10 @@ class Ticker:
         return self._tick(*given)
 
 
-def domains_of(program: Program) -> dict[str, tuple[float, float]]:
-    """The domain of each state and control; any number where an angle wraps."""
-    states = {s.name: ANY if s.kind is Kind.PERIODIC else (s.low, s.high) for s in program.states}
-    return {**states, **{c.name: (c.low, c.high) for c in program.controls}}
+def domains_of(program: Program) -> dict[str, Domain]:
+    """The domain of each state and control."""
+    states = {s.name: domain_of(s.kind, s.low, s.high) for s in program.states}
+    return {**states, **{c.name: (c.low, c.high, 0.0) for c in program.controls}}
 
 
 def _frame(
@@ -132,7 +132,7 @@ def _frame(
         tape=tape,
         rest=rest,
         inputs=_whole(list(zip(entries, inputs.inhibits.tolist(), strict=True)), 2),
-        scaling=frozen(np.column_stack([inputs.scales, inputs.low, inputs.high])),
+        scaling=frozen(np.column_stack([inputs.scales, inputs.low, inputs.high, inputs.turns])),
         ways=ways,
         jumps=jumps,
         noisy=read_only_integers([names.index(noise.state) for noise in program.noise]),
@@ -219,14 +219,8 @@ def _is_own(program: Program, state: State) -> bool:
     return state.role is Role.DRIVEN or state.name == program.field.mode
 
 
-def _edges(state: State) -> tuple[float, float, float]:
-    match state.kind:
-        case Kind.CONTINUOUS:
-            return state.low, state.high, 0.0
-        case Kind.PERIODIC:
-            return state.low, state.high, state.high - state.low
-        case Kind.DISCRETE:
-            return *ANY, 0.0
+def _edges(state: State) -> Domain:
+    return ANY if state.kind is Kind.DISCRETE else domain_of(state.kind, state.low, state.high)
 
 
 def _packed(command: Command, program: Program) -> tuple[int, int]:

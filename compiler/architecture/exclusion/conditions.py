@@ -121,8 +121,10 @@ class Sampled:
         if len(entry.values) == 1:
             return Number(entry.values[0])
         raw = self._raw(place, entry)
-        if entry.signal < 0 or entry.limit is Limit.WRAPS or not self._leaves(entry):
+        if entry.signal < 0 or not self._leaves(entry):
             return raw
+        if entry.limit is Limit.WRAPS:
+            return wrapped(raw, entry.low, entry.high)
         return Apply("clip", (raw, Number(entry.low), Number(entry.high)))
 
     def _raw(self, place: int, entry: Entry) -> Expr:
@@ -151,6 +153,15 @@ class Sampled:
 
     def _flag(self, letter: str, rule: int) -> str:
         return f"{letter}{self.place}.{rule}@{self.stamp}"
+
+
+def wrapped(raw: Expr, low: float, high: float) -> Expr:
+    """A number turned into a range, in the very steps in which a node that samples does it."""
+    first, last, turn = Number(low), Number(high), Number(high - low)
+    turns = Apply("floor", (Apply("div", (Apply("sub", (raw, first)), turn)),))
+    inside = Apply("and", (Apply("ge", (raw, first)), Apply("le", (raw, last))))
+    turned = Apply("sub", (raw, Apply("mul", (turn, turns))))
+    return Apply("where", (inside, raw, Apply("clip", (turned, first, last))))
 
 
 def remembers(rule: Rule, decider: Decider) -> bool:

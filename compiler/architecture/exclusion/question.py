@@ -41,7 +41,7 @@ class Limit(StrEnum):
     CLIPS = "clips"
     INHIBITS = "inhibits"
     WRAPS = "wraps"
-    """Nothing: an angle is any number."""
+    """It is turned into the domain, as angles are."""
 
 
 @final

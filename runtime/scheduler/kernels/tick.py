@@ -36,7 +36,7 @@ NOTHING, OWN, COMMANDS = 0, 1, 2
 """What looks ahead; where nothing is to be found out, it does not."""
 ENTRY, INHIBITS = 0, 1
 """Columns of `Frame.inputs`."""
-SCALE, LOW, HIGH = 0, 1, 2
+SCALE, LOW, HIGH, TURN = 0, 1, 2, 3
 """Columns of `Frame.scaling`."""
 MODE, TARGET, FIRST, COUNT = 0, 1, 2, 3
 """Columns of `Frame.ways`."""
@@ -48,7 +48,7 @@ class Frame(NamedTuple):
     tape: gives the rates, or next values, of all n states.
     rest: gives acts_when, the outputs, the sizes of the noise, the guards' conditions, then the
     values to jump to. inputs: (m, 2) the entry, and whether a reading outside inhibits.
-    scaling: (m, 3). ways: (g, 4), jumps: (j,) as of `runtime.kernels.events.Gates`.
+    scaling: (m, 4). ways: (g, 4), jumps: (j,) as of `runtime.kernels.events.Gates`.
     noisy: the states with noise. moving: states that the field moves. own: states that are the
     behavior's own: only driven, and the mode. edges: (3, n) lowest and highest value, and the
     period (0: not periodic) of each own state. commands: (c, 2) what it takes, and of which state,
@@ -148,10 +148,13 @@ def _sense(frame: Frame, board: Array, signals: Integers, values: Array, registe
         if low <= value <= high:
             register[frame.inputs[j, ENTRY]] = value
             continue
-        if frame.inputs[j, INHIBITS] == 1 or np.isnan(value):
+        turn = frame.scaling[j, TURN]
+        if turn > 0.0:
+            value -= turn * np.floor((value - low) / turn)
+        if np.isnan(value) or (frame.inputs[j, INHIBITS] == 1 and turn == 0.0):
             flags = OUTSIDE
         if not np.isnan(value):
-            register[frame.inputs[j, ENTRY]] = low if value < low else high
+            register[frame.inputs[j, ENTRY]] = min(max(value, low), high)
     return flags
 
 

@@ -9,16 +9,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime import chance
-from runtime.architecture import Outside
+from runtime.architecture import Input, Outside
 from runtime.code import Code
 from runtime.interpolation import lookup
-from runtime.program import Kind, Noise, Program, Role
+from runtime.program import Kind, Noise, Output, Program, Role
+from runtime.scheduler.inputs import Inputs, domain_of
 from runtime.scheduler.observer import What
 from runtime.scheduler.scheduler import Scheduler
 from runtime.simulate import simulate
 from runtime.table import Axis, Method
 from tests.runtime.behaviors import (
     NOWHERE,
+    ONE,
     control,
     formula_program,
     state,
@@ -213,6 +215,35 @@ def test_a_reading_outside_may_keep_its_node_from_acting(reading: float) -> None
     assert not noted.ticks[0][1].acts
     assert noted.channels[0][2][0] == 0.0
     assert [event.what for _, event in noted.events] == [What.OUTSIDE]
+
+
+@pytest.mark.parametrize("reading", [-0.25 * math.tau, 1.5, 5 * math.tau + 0.5, -1e-18, 1e300])
+@pytest.mark.parametrize("outside", [Outside.CLIP, Outside.INHIBIT])
+def test_an_angle_from_elsewhere_is_turned_into_its_own_range(
+    reading: float, outside: Outside
+) -> None:
+    turning = replace(state("x", 0.0, math.tau), kind=Kind.PERIODIC)
+    told = Output("seen", ONE, Code("x"), "", NOWHERE)
+    program = replace(formula_program((turning,), {"x": "0"}), outputs=(told,))
+
+    _, noted = run(N("a", program, PERIOD, 0.0, {"x": ("pos.x", 1.0, outside)}), 1, x=reading)
+
+    tick = noted.ticks[0][1]
+    assert 0.0 <= tick.outputs[0] == tick.register[0] <= math.tau
+    assert tick.acts
+    if abs(reading) < 1e3:
+        assert math.sin(tick.outputs[0]) == pytest.approx(math.sin(reading), abs=1e-12)
+        assert math.cos(tick.outputs[0]) == pytest.approx(math.cos(reading), abs=1e-12)
+
+
+def test_an_arbiter_reads_an_angle_in_its_own_range() -> None:
+    wire = Input("x", 0, 0.0, -1.0, Outside.INHIBIT, "")
+    inputs = Inputs([wire], {"x": domain_of(Kind.PERIODIC, 0.0, math.tau)})
+
+    found, acts = inputs.read(np.array([1.0]))
+
+    assert found[0] == pytest.approx(math.tau - 1.0)
+    assert acts
 
 
 def test_where_the_field_has_no_value_the_behavior_does_not_act_and_says_so() -> None:
