@@ -20,6 +20,17 @@ class Operator(StrEnum):
     EVENTUALLY = "eventually"
     UNTIL = "until"
 
+    @property
+    def operands(self) -> int:
+        """How many parts before it are its own."""
+        match self:
+            case Operator.PREDICATE:
+                return 0
+            case Operator.NOT | Operator.ALWAYS | Operator.EVENTUALLY:
+                return 1
+            case Operator.AND | Operator.OR | Operator.IMPLIES | Operator.UNTIL:
+                return 2
+
 
 @final
 @dataclass(frozen=True, slots=True)

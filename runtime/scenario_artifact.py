@@ -6,16 +6,16 @@ own, which is looked for beside the file of the architecture that names it.
 """
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
 from runtime import architecture_artifact
 from runtime.container import ArtifactError, Member, join, split
 from runtime.document import Document
+from runtime.requirement_faults import faults_of
 from runtime.scenario import Robot, Scenario, Start
 from runtime.scheduler.clock import whole_steps
-from runtime.tape import check_code
 from runtime.world.heights import BITS, ranges_of
 
 
@@ -39,6 +39,10 @@ class Staged:
     robots: tuple[Placed, ...]
 
 
+SHORTEST: Final = 1e-9
+"""Seconds: the shortest step that stamps tell apart."""
+LONGEST: Final = 9e9
+"""Seconds: the longest run whose nanoseconds are counted in 64 bits."""
 DOCUMENT: Final = Document("scenario", "staged", 1, Staged)
 
 
@@ -97,13 +101,14 @@ def _faults(scenario: Scenario) -> Iterator[str]:
     names = [robot.name for robot in scenario.robots]
     if not names or len(set(names)) != len(names):
         yield "it needs robots of different names"
-    if not (scenario.step > 0.0 and scenario.duration > 0.0):
+    if not is_time(scenario.step, scenario.duration):
         yield "it has no step or no duration"
         return
     if ranges_of(_heights(scenario)) > BITS:
         yield "it has more ranges of height than the physics tells apart"
-    yield from _faults_of_times(scenario)
-    yield from _faults_of_requirements(scenario)
+    yield from faults_of_times(scenario.robots, scenario.step)
+    for requirement in scenario.requirements:
+        yield from faults_of(requirement)
 
 
 def _heights(scenario: Scenario) -> list[tuple[float, float]]:
@@ -113,25 +118,24 @@ def _heights(scenario: Scenario) -> list[tuple[float, float]]:
     return [*((thing.low, thing.high) for thing in scenario.world.things), *scattered, *bodies]
 
 
-def _faults_of_times(scenario: Scenario) -> Iterator[str]:
-    for robot in scenario.robots:
-        times = [time for s in robot.body.sensors for time in (s.every, s.latency)]
-        times += [t for n in robot.architecture.nodes for t in (n.period, n.response_time)]
+def is_time(step: float, duration: float) -> bool:
+    """Whether a run can have this step and this duration (s): stamps are whole nanoseconds."""
+    return all(SHORTEST <= time <= LONGEST for time in (step, duration))
+
+
+def faults_of_times(robots: Sequence[Robot], step: float) -> Iterator[str]:
+    """Which times of robots' nodes and sensors are no multiples of the step, each in a sentence."""
+    for robot in robots:
+        sensors, nodes = robot.body.sensors, robot.architecture.nodes
+        periods = [*(s.every for s in sensors), *(n.period for n in nodes)]
+        delays = [*(s.latency for s in sensors), *(n.response_time for n in nodes)]
         try:
-            for time in times:
-                whole_steps(time, scenario.step)
+            for time in (*periods, *delays):
+                whole_steps(time, step)
+            if min(periods, default=step) < 0.5 * step:
+                yield f"of {robot.name} {min(periods)!r} s is shorter than the step, {step!r} s"
         except ValueError as problem:
             yield f"of {robot.name} {problem}"
-
-
-def _faults_of_requirements(scenario: Scenario) -> Iterator[str]:
-    for requirement in scenario.requirements:
-        for part in requirement.formula:
-            try:
-                if part.margin is not None:
-                    check_code(part.margin, requirement.quantities)
-            except ValueError as problem:
-                yield f"'{requirement.text}' can't be judged: {problem}"
 
 
 def _name(place: int) -> str:

@@ -1,39 +1,35 @@
 """A run put together again from its recording, to be looked at: nothing is run again."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
 import numpy as np
-from mcap.reader import make_reader
 
 from runtime.arrays import Array
 from runtime.container import ArtifactError
-from runtime.program_json import from_plain
-from runtime.recording.foxglove import classes
 from runtime.recording.happened import SUFFIX, Happened, from_bytes
 from runtime.recording.nodes import MEASURED, READINGS, THINGS, topic_of
 from runtime.recording.tables import Field
-from runtime.recording.tracks import ActingTrack, LightFrames, SensorTrack
+from runtime.recording.tracks import ActingTrack, SensorTrack
 from runtime.scenario import Robot, Scenario
-from runtime.world.model import World
+from runtime.world.model_faults import faults_of_things
+from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.figures.scene import Scene, Trails
 from specc.pictured import Course, glow_of, scene_of, trails_of
+from specc.recorded_requirements import judged_on
 from specc.run_standard import Carried, carried_by
-from verifier.architectures.document import SUFFIX as SCENARIO
-from verifier.architectures.log import RunLog, open_run
+from verifier.architectures.document import ScenarioDocument
+from verifier.architectures.floor import recorded_floor
+from verifier.architectures.log import RunLog, open_run, together
 from verifier.architectures.quantities import quantities_in, topics_of_quantities
 from verifier.architectures.recorded import acting_in, topics_of_nodes
-from verifier.architectures.required import results_on
 from verifier.report.requirement_results import RequirementResult
 from verifier.traces.files.log import Progress
 from verifier.traces.files.open_log import attachments
 
-NANOSECONDS: Final = 1e9
-LIGHT: Final = "/world/light"
 POSE: Final = [Field("x"), Field("y"), Field("heading")]
 
 
@@ -52,7 +48,8 @@ def replayed(trace: Path | str, reading: Progress | None = None) -> Replay:
     """Read the recording of a scenario.
 
     Raises:
-        SpecError: it can't be read (V301), is none of a scenario (V393), or is damaged (V332).
+        SpecError: it can't be read (V301), is none of a scenario (V393), is damaged (V332), or
+            lacks a quantity that is required (V394).
     """
     trace = Path(trace)
     carried = carried_by(trace)
@@ -60,56 +57,70 @@ def replayed(trace: Path | str, reading: Progress | None = None) -> Replay:
         raise fault("V393", trace, "this is not the recording of a scenario", "record it by "
                     "`specc simulate SCENARIO -o run.mcap`")  # fmt: skip
     try:
-        scenario, happened = _scenario(trace, carried), _happened(trace)
-    except (ArtifactError, KeyError, ValueError) as error:
-        raise fault("V332", trace, f"what it carries can't be used: {error}", "record it again") \
-            from error  # fmt: skip
+        scenario, happened = _scenario(carried.document, carried.robots), _happened(trace, carried)
+        glow = glow_of(scenario, recorded_floor(trace))
+    except ArtifactError as error:
+        raise _damaged(trace, f"what it carries can't be used: {error}") from error
     names = [thing.name for thing in happened.things]
     log = open_run(trace, _topics(scenario.robots, names), scenario.step, reading)
     requirements: tuple[RequirementResult, ...] = ()
     if scenario.requirements:
         quantities = quantities_in(log, scenario.robots, names)
-        requirements = results_on(scenario.requirements, quantities, scenario.duration)
+        requirements, _ = judged_on(trace, scenario.requirements, quantities, carried, log)
     course = _course(log, scenario.robots, happened, names)
     if not course.times.size:
-        raise fault("V332", trace, "it does not tell where the robots were", "record it again")
-    glow = glow_of(scenario, _floor(trace))
+        raise _damaged(trace, "it does not tell where the robots were")
     scene = scene_of(scenario, happened.things, glow)
     return Replay(scenario, scene, trails_of(course, requirements), requirements)
 
 
-def _scenario(trace: Path, carried: Carried) -> Scenario:
-    document = json.loads(attachments(trace, SCENARIO)[0][1])
-    world = from_plain(World, document["world"], "world", _no_table)
-    assert carried.document is not None
+def _damaged(trace: Path, why: str) -> SpecError:
+    return fault("V332", trace, why, "record it again")
+
+
+def _scenario(document: ScenarioDocument, robots: tuple[Robot, ...]) -> Scenario:
     return Scenario(
-        name=carried.document.name,
-        about=document["about"],
-        world=world,
-        robots=carried.robots,
-        duration=carried.document.duration,
-        step=carried.document.step,
-        seed=carried.document.seed,
-        beginnings=document["beginnings"],
-        requirements=carried.document.requirements,
-        source=world.source,
+        name=document.name,
+        about=document.about,
+        world=document.world,
+        robots=robots,
+        duration=document.duration,
+        step=document.step,
+        seed=document.seed,
+        beginnings=document.beginnings,
+        requirements=document.requirements,
+        source=document.world.source,
     )
 
 
-def _happened(trace: Path) -> Happened:
+def _happened(trace: Path, carried: Carried) -> Happened:
+    """What the recording says of things, touches and jams, which fits to the scenario.
+
+    Raises:
+        ArtifactError: it does not say it, or it does not fit.
+    """
     found = attachments(trace, SUFFIX)
     if not found:
         raise ArtifactError("it does not say where things were laid")
-    return from_bytes(found[0][1])
+    happened = from_bytes(found[0][1])
+    for problem in faults_of_things(happened.things):
+        raise ArtifactError(problem)
+    assert carried.document is not None
+    robots = {robot.name for robot in carried.robots}
+    told = {each.robot for each in (*happened.touches, *happened.jams)} - robots
+    if told:
+        raise ArtifactError(f"it tells of a robot '{min(told)}', which has no architecture")
+    carriers = {light.on for light in carried.document.world.lights if light.on}
+    missing = carriers - {thing.name for thing in happened.things}
+    if missing:
+        raise ArtifactError(f"a light stands on '{min(missing)}', which was not laid")
+    return happened
 
 
 def _topics(robots: Sequence[Robot], things: Sequence[str]) -> dict[str, list[Field]]:
     """All that is read: of nodes, and of quantities."""
-    topics = dict(topics_of_nodes({robot.name: robot.architecture for robot in robots}))
-    for topic, fields in topics_of_quantities(robots, things).items():
-        known = {field.name for field in topics.get(topic, [])}
-        topics[topic] = [*topics.get(topic, []), *(f for f in fields if f.name not in known)]
-    return topics
+    nodes = topics_of_nodes({robot.name: robot.architecture for robot in robots})
+    return together([nodes, topics_of_quantities(robots, things)])
 
 
 def _course(
@@ -148,25 +159,3 @@ def _sensors(log: RunLog, robot: Robot) -> tuple[SensorTrack, ...]:
         times, columns = log.columns(topic_of(robot.name, sensor.name, READINGS), fields)
         tracks.append(SensorTrack(times, np.column_stack(list(columns.values()))))
     return tuple(tracks)
-
-
-def _floor(trace: Path) -> LightFrames | None:
-    """The light on the floor, where it was recorded."""
-    times, frames, grid = [], [], None
-    with trace.open("rb") as file:
-        for _, _, message in make_reader(file).iter_messages(topics=[LIGHT]):
-            grid = classes()["Grid"].FromString(message.data)
-            lux = np.frombuffer(grid.data, dtype="<f4").reshape(-1, grid.column_count)
-            times.append(message.log_time / NANOSECONDS)
-            frames.append(lux.astype(np.float64))
-    if grid is None:
-        return None
-    rows, columns = frames[0].shape
-    corner, cell = grid.pose.position, grid.cell_size
-    xs = corner.x + cell.x * (np.arange(columns) + 0.5)
-    ys = corner.y + cell.y * (np.arange(rows) + 0.5)
-    return LightFrames(xs, ys, np.array(times), np.array(frames))
-
-
-def _no_table(name: str, shape: tuple[int, ...]) -> Array:
-    raise ArtifactError(f"a world has no table ({name}, {shape})")

@@ -7,30 +7,26 @@ from typing import Final, final
 
 from runtime.arbiter import Arbiter
 from runtime.program import Program
-from runtime.recording.tracks import Quantity
 from runtime.requirement import Requirement
 from runtime.scenario import Robot
-from spec_schema.diagnostics import Diagnostic, SpecError
-from spec_schema.suggest import did_you_mean
 from specc.faults import fault
+from specc.recorded_requirements import judged_on
 from specc.run_standard import Carried, Standard, carried_by, standard_of
 from specc.spec_finding import Found
 from specc.verifying import Verification, program_for_verify
 from specc.verifying_architecture import How, NodeVerdict, NotJudged, examine_nodes
-from verifier.architectures.log import RunLog, open_run
+from verifier.architectures.log import RunLog, open_run, together
 from verifier.architectures.motion import topics_of_motion, with_motion
 from verifier.architectures.own_doing import topics_of_doing, with_own_doing
 from verifier.architectures.quantities import POSE, quantities_in, topics_of_quantities
 from verifier.architectures.recorded import records_of, topics_of_nodes
-from verifier.architectures.required import examine_requirements, results_on
+from verifier.architectures.required import examine_requirements
 from verifier.report.report import WORST_FIRST, Verdict
 from verifier.traces.files.log import Progress
 from verifier.traces.read import refuse_losses
 
 REQUIREMENTS: Final = "requirements"
 """What that part of a recording is called that no node answers for."""
-MOST_NAMED: Final = 12
-"""So many quantities are listed."""
 
 
 @final
@@ -154,19 +150,14 @@ def verify_carried(
 
 
 def _opened(trace: Path, carried: Carried, standard: Standard, reading: Progress | None) -> RunLog:
-    topics = dict(topics_of_nodes({r.name: r.architecture for r in standard.robots}))
-    wanted = [
-        each(robot) for robot in standard.robots for each in (topics_of_doing, topics_of_motion)
-    ]
+    wanted = [topics_of_nodes({r.name: r.architecture for r in standard.robots})]
+    for robot in standard.robots:
+        wanted += [topics_of_doing(robot), topics_of_motion(robot)]
     if standard.requirements:
         things = _things(standard.requirements, carried.robots)
         wanted.append(topics_of_quantities(carried.robots, things))
-    for topic, fields in (pair for each in wanted for pair in each.items()):
-        known = {field.name for field in topics.get(topic, [])}
-        more = [field for field in fields if field.name not in known]
-        topics[topic] = [*topics.get(topic, []), *more]
     step = 0.0 if carried.document is None else carried.document.step
-    return open_run(trace, topics, step, reading)
+    return open_run(trace, together(wanted), step, reading)
 
 
 def _things(requirements: Sequence[Requirement], robots: Sequence[Robot]) -> list[str]:
@@ -182,47 +173,12 @@ def _required(
     if not standard.requirements:
         return None
     things = _things(standard.requirements, carried.robots)
-    quantities = quantities_in(log, carried.robots, things)
-    _refuse_unknown(trace, standard.requirements, quantities)
-    ends = [float(each.times[-1]) for each in quantities.values() if each.times.size]
-    duration = max(ends, default=0.0)
-    document = carried.document
-    if document is not None and not log.losses:
-        duration = round(document.duration / document.step) * document.step
-    results = results_on(standard.requirements, quantities, duration)
+    results, duration = judged_on(
+        trace, standard.requirements, quantities_in(log, carried.robots, things), carried, log
+    )
     source = f"{trace}: {REQUIREMENTS}"
     made = examine_requirements(results, standard.spec, source, duration, log.losses)
     return Verification(Found(standard.requirements, standard.how), made, None, REQUIREMENTS)
-
-
-def _refuse_unknown(
-    trace: Path, requirements: Sequence[Requirement], quantities: dict[str, Quantity]
-) -> None:
-    """Every quantity that is read was recorded.
-
-    Raises:
-        SpecError: one was not (V394).
-    """
-    mistakes: list[Diagnostic] = []
-    for each in requirements:
-        for name in each.quantities:
-            if name in quantities:
-                continue
-            message = f"'{each.text}' is about '{name}', which is not in this recording"
-            error = fault("V394", trace, message, _there(name, quantities))
-            mistakes += error.diagnostics
-    if mistakes:
-        raise SpecError(mistakes)
-
-
-def _there(name: str, quantities: dict[str, Quantity]) -> str:
-    """What may be meant, and what there is of the same robot, or at all."""
-    alike = [other for other in quantities if other.partition(".")[0] == name.partition(".")[0]]
-    last = name.rpartition(".")[2]
-    known = sorted(alike or quantities, key=lambda each: (not each.endswith(f".{last}"), each))
-    more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
-    there = f"there are: {', '.join(known[:MOST_NAMED])}{more}"
-    return "\n".join(part for part in (did_you_mean(name, quantities), there) if part)
 
 
 def _verification(each: NodeVerdict, standard: Standard) -> Verification:

@@ -1,6 +1,6 @@
 """The recording of a scenario, opened: columns of its topics in SI, at instants of the run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final, TypeAlias, final
 
@@ -55,8 +55,22 @@ class RunLog:
 
     def _times(self, stream: Messages, readable: Integers) -> Array:
         seconds = stream.times[: readable.max(initial=-1) + 1][readable] / NANOSECONDS
+        if not self._step:
+            return np.asarray(seconds)
         # Stamps are whole nanoseconds; the run's own instants are multiples of its step.
-        return np.asarray(np.rint(seconds / self._step) * self._step if self._step else seconds)
+        instants = np.rint(seconds / self._step) * self._step
+        return np.where(np.abs(instants - seconds) <= 1.0 / NANOSECONDS, instants, seconds)
+
+
+def together(wanted: Iterable[Topics]) -> dict[str, list[Field]]:
+    """All that is read: each field of a topic once, by its name."""
+    found: dict[str, dict[str, Field]] = {}
+    for topics in wanted:
+        for topic, fields in topics.items():
+            known = found.setdefault(topic, {})
+            for field in fields:
+                known.setdefault(field.name, field)
+    return {topic: list(known.values()) for topic, known in found.items()}
 
 
 def open_run(

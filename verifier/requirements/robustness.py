@@ -46,22 +46,12 @@ def robustness(requirement: Requirement, signals: Mapping[str, Signal], span: Sp
     """The requirement's formula with the robustness of all of its parts."""
     parts: list[Part] = []
     for formula in requirement.formula:
-        count = _operands(formula.operator)
+        count = formula.operator.operands
         operands = tuple(parts[len(parts) - count :])
         del parts[len(parts) - count :]
         parts.append(_part(formula, operands, requirement, signals, span))
     assert len(parts) == 1, "a formula in postfix order leaves one part"
     return parts[0]
-
-
-def _operands(operator: Operator) -> int:
-    match operator:
-        case Operator.PREDICATE:
-            return 0
-        case Operator.NOT | Operator.ALWAYS | Operator.EVENTUALLY:
-            return 1
-        case Operator.AND | Operator.OR | Operator.IMPLIES | Operator.UNTIL:
-            return 2
 
 
 def _part(
