@@ -1,7 +1,7 @@
 """Requirements of a scenario: sentences, their names and dimensions checked, as code."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 from compiler.findings import Findings
@@ -11,7 +11,7 @@ from runtime.requirement import Formula, Operator, Requirement
 from spec_schema.dimension import DIMENSIONLESS, Dimension, describe
 from spec_schema.expressions.dimensions import dimension_of
 from spec_schema.expressions.rewrite import names_in, resolve_texts, substitute
-from spec_schema.expressions.tree import Expr, Name, Number, walk
+from spec_schema.expressions.tree import Apply, Expr, Name, Number, walk
 from spec_schema.faults import Fault
 from spec_schema.places import Path
 from spec_schema.requirement_sentences import (
@@ -25,6 +25,7 @@ from spec_schema.requirement_sentences import (
 from spec_schema.requirement_words import RequirementError
 from spec_schema.suggest import did_you_mean
 from spec_schema.units import Unit, parse_quantity
+from spec_schema.wording import number
 
 MOST_NAMED: Final = 6
 """How many quantities a help lists."""
@@ -33,11 +34,12 @@ MOST_NAMED: Final = 6
 @final
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A quantity of a run: its dimension, and the values of a discrete one."""
+    """A quantity of a run: its dimension, the values of a discrete one, and its unit's name."""
 
     dimension: Dimension
     values: tuple[str, ...] = ()
     is_discrete: bool = False
+    unit: str = ""
 
 
 def lower_requirement(
@@ -101,9 +103,12 @@ def _margin(
     quantities = {name: parse_quantity(name) for name in names if is_quantity(name)}
     dimensions = {name: one.dimension for name, one in known.items() if name in names}
     dimensions |= {name: one.unit.dimension for name, one in quantities.items()}
-    faults = dimension_of(condition, dimensions)[1]
+    found = dimension_of(condition, dimensions)[1]
+    faults = [_in_its_unit(fault, condition, known) for fault in found]
     values = {name: known[name].values for name in names if name in known and known[name].values}
     resolved, more = resolve_texts(condition, values)
+    if not names <= {*known, *quantities}:
+        more = []  # the values of what is not known are not known either
     discrete = {name for name in names if name in known and known[name].is_discrete}
     margin = signed(resolved, discrete)
     if margin is None:
@@ -113,6 +118,32 @@ def _margin(
     dimension = None if faults else dimension_of(margin, dimensions)[0]
     numbers = {name: Number(one.value) for name, one in quantities.items()}
     return substitute(margin, numbers), dimension, [*faults, *more]
+
+
+def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -> Fault:
+    """The fault, with what to write where a number has no unit, or another than the quantity's."""
+    for node in walk(condition):
+        if not isinstance(node, Apply) or node.mark != (fault.start, fault.end):
+            continue
+        units = [
+            known[o.name].unit for o in node.operands if isinstance(o, Name) and o.name in known
+        ]
+        if len(units) != 1 or units[0] in {"", "1"}:
+            continue
+        for operand in node.operands:
+            if isinstance(operand, Number):
+                remedy = (
+                    f"write `{number(operand.value)} {units[0]}`: a plain number has no unit here"
+                )
+                return replace(fault, help=remedy)
+            if isinstance(operand, Name) and is_quantity(operand.name):
+                owner = next(
+                    o.name for o in node.operands if isinstance(o, Name) and o.name in known
+                )
+                return replace(
+                    fault, help=f"{owner} is in {units[0]}: write a number in {units[0]}"
+                )
+    return fault
 
 
 def _shown_in(sentence: Sentence, dimensions: list[Dimension | None]) -> Unit:

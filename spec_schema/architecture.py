@@ -1,11 +1,11 @@
 """The model of an architecture: behaviors and control modules, wired to one another and a body."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Literal, Self, TypeAlias, final
+from typing import Annotated, Final, Literal, Self, TypeAlias, final
 
 from pydantic import BeforeValidator, Field, Strict, model_validator
 
-from spec_schema.mistake import Mistake, refuse
+from spec_schema.mistake import Mistake, refuse, refused
 from spec_schema.value_types import (
     Callee,
     Expression,
@@ -17,6 +17,7 @@ from spec_schema.value_types import (
     Version,
 )
 from spec_schema.wires import WireSpec
+from spec_schema.wording import described
 
 NodeNames: TypeAlias = Annotated[tuple[Name, ...], Strict(strict=False)]
 
@@ -139,6 +140,9 @@ ExclusiveSpec: TypeAlias = Annotated[
 ]
 
 
+WAYS: Final = ("exclusive", "sum", "blend", "priority", "function")
+
+
 @final
 class ResolutionSpec(StrictModel):
     """How a channel is resolved that several behaviors reach: exactly one way."""
@@ -168,14 +172,25 @@ class ResolutionSpec(StrictModel):
         examples=["modules:mix"],
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _is_mapping(cls, value: object) -> object:
+        """A way and its nodes without the brackets that make a mapping of them."""
+        if isinstance(value, str):
+            way, _, rest = value.partition(" ")
+            meant = f"exclusive: {value}" if value.isidentifier() else "exclusive: choose"
+            meant = f"{way}: {rest.strip()}" if way in WAYS and rest else meant
+            message = f"expected a mapping, got {described(value)}"
+            raise refused("S103", message, f"write {{{meant}}}")
+        return value
+
     @model_validator(mode="after")
     def _is_one(self) -> Self:
-        ways = ("exclusive", "sum", "blend", "priority", "function")
-        given = [key for key in ways if getattr(self, key) is not None]
+        given = [key for key in WAYS if getattr(self, key) is not None]
         if len(given) != 1:
             what = " and ".join(given) if given else "nothing"
             message = f"a channel is resolved in one way; this one by {what}"
-            refuse([Mistake("S317", message, f"write one of: {', '.join(ways)}", on_key=True)])
+            refuse([Mistake("S317", message, f"write one of: {', '.join(WAYS)}", on_key=True)])
         return self
 
 

@@ -13,7 +13,7 @@ from runtime.arbiter import Paradigm
 from runtime.architecture import Channel, Command, Resolution, Way
 from spec_schema.architecture import ResolutionSpec
 from spec_schema.places import Path
-from spec_schema.suggest import did_you_mean, there_are
+from spec_schema.suggest import did_you_mean, nearest, there_are
 from spec_schema.wording import listed
 
 ALIKE: Final = frozenset({Way.SUM, Way.BLEND, Way.FUNCTION})
@@ -84,11 +84,20 @@ def _resolved(reach: Reach, parts: Parts, wiring: Wiring | None, findings: Findi
     if not all(part.is_known for part in parts.nodes.values()):
         return alone  # who else reaches it is not known
     if spec is None:
+        if _is_misspelt(reach.port.name, parts):
+            return alone  # which is told under `channels`
         return _unresolved(reach, parts, wiring, alone, findings)
     found = _declared(spec, reach, parts, wiring, path, findings)
     if found is not None and found.way in ALIKE:
         _check_alike(reach, path, findings)
     return found or alone
+
+
+def _is_misspelt(channel: str, parts: Parts) -> bool:
+    """Whether a resolution is probably meant for the channel, under another name."""
+    assert parts.body is not None, "a channel is of a body"
+    known = [port.name for port in parts.body.ports]
+    return any(nearest(name, known) == channel for name in parts.spec.channels if name not in known)
 
 
 def _unresolved(
@@ -132,9 +141,8 @@ def conflicts(nodes: tuple[str, ...], parts: Parts) -> list[tuple[str, str]]:
     """Pairs of nodes that no combined behavior keeps from acting at once."""
     apart = {
         frozenset(pair)
-        for name, part in parts.nodes.items()
-        if name in nodes
-        for pair in _replaced(name, part)
+        for name in nodes
+        for pair in _replaced(name, parts)
     }
     return [
         (first, second)
@@ -144,10 +152,16 @@ def conflicts(nodes: tuple[str, ...], parts: Parts) -> list[tuple[str, str]]:
     ]
 
 
-def _replaced(name: str, part: Part) -> Iterator[tuple[str, str]]:
-    """The pairs that never act at once: a combined behavior, and each of its parts."""
-    for other in part.spec.replaces:
-        yield name, other
+def _replaced(name: str, parts: Parts) -> Iterator[tuple[str, str]]:
+    """The pairs that never act at once: a combined behavior, and each of its parts.
+
+    And another one that combines some of its parts only, or the same.
+    """
+    mine = set(parts.nodes[name].spec.replaces)
+    for other, part in parts.nodes.items():
+        theirs = set(part.spec.replaces)
+        if other in mine or (other != name and theirs and theirs <= mine):
+            yield name, other
 
 
 def _declared(
@@ -248,7 +262,9 @@ def _arbiter(name: str, parts: Parts, path: Path, findings: Findings) -> Part | 
         return parts.nodes[name]
     remedy = did_you_mean(name, arbiters) or there_are(arbiters)
     if name in parts.nodes:
-        findings.error("S343", path, f"'{name}' is no arbiter", f"name an arbiter: {remedy}")
+        others = "list two nodes or more, or " if path[-1] == "exclusive" else ""
+        message = f"'{name}' is no arbiter"
+        findings.error("S343", path, message, f"{others}name an arbiter: {remedy}")
     else:
         findings.error("S322", path, f"no node is named '{name}'", remedy)
     return None

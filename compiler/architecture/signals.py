@@ -80,6 +80,10 @@ def why_unknown(name: str, board: Mapping[str, int], parts: Parts) -> str:
         states = [state.name for state in part.program.states]
         if what in states:
             return f"tell it as an output of {owner}: `{what}_now: {{is: {what}, unit: ...}}`"
+    for node in parts.nodes.values():
+        named = node.program or node.arbiter
+        if named is not None and named.name == owner and f"{node.name}.{what}" in board:
+            return f"{owner} is what node '{node.name}' runs: write '{node.name}.{what}'"
     own = sorted(signal for signal in board if signal.startswith(f"{owner}."))
     if own:
         return f"'{owner}' tells {', '.join(own)}"

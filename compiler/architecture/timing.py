@@ -117,13 +117,16 @@ def _check_lag(part: Part, program: Program, fastest: Fastest, findings: Finding
         f"{part.name} answers up to {seconds(part.lag)} late, and its field changes at up to "
         f"{fastest.rate:.3g} per second (at {where})"
     )
-    response = part.response_time
+    response, at = part.response_time, "period"
     if response < 0.8 * allowed:
         remedy = f"write 'period: {seconds(_rounded(allowed - response))}' or less"
+    elif part.period < 0.8 * allowed:
+        remedy = f"write 'response_time: {seconds(_rounded(allowed - part.period))}' or less"
+        at = "response_time"
     else:
         half = seconds(_rounded(allowed / 2))
         remedy = f"write 'period: {half}' and 'response_time: {half}' or less"
-    findings.error("S353", (*part.path, "period"), message, f"{remedy}, or lower its gains")
+    findings.error("S353", (*part.path, at), message, f"{remedy}, or lower its gains")
 
 
 def fastest_of(program: Program, reach: Mapping[str, tuple[float, float]]) -> Fastest:

@@ -13,7 +13,7 @@ from compiler.quantities import ONE, si_within
 from runtime.architecture import Input, Outside, Signal
 from runtime.program import Kind, Unit
 from spec_schema.places import Path
-from spec_schema.suggest import did_you_mean, there_are
+from spec_schema.suggest import did_you_mean, nearest, there_are
 from spec_schema.units import parse_unit
 from spec_schema.wires import Wire
 from spec_schema.wording import quoted
@@ -76,12 +76,20 @@ def _read(entry: Entry, part: Part, board: Board, parts: Parts, findings: Findin
     wire = part.spec.sense.get(entry.name)
     path: Path = (*part.path, "sense", entry.name)
     if wire is None:
+        if _is_misspelt(entry.name, part):
+            return None  # which is told at the wire
         at: Path = (*part.path, "sense") if part.spec.sense else part.path
         message = f"nothing is wired to '{entry.name}', which {part.name} senses"
         example = next(iter(_fitting(entry, board)), "SENSOR.READING")
         findings.error("S331", at, message, f"add '{entry.name}: {example}'", key=True)
         return None
     return _wired(entry, wire, path, board, parts, findings)
+
+
+def _is_misspelt(name: str, part: Part) -> bool:
+    """Whether a wire is probably meant for what the node reads, under another name."""
+    reads = [entry.name for entry in part.reads]
+    return any(nearest(other, reads) == name for other in part.spec.sense if other not in reads)
 
 
 def _fitting(entry: Entry, board: Board) -> list[str]:

@@ -41,4 +41,4 @@ def quantities_of(world: World, robots: Sequence[Robot]) -> dict[str, Measured]:
 
 
 def _in(unit: str, values: tuple[str, ...] = (), kind: Kind = Kind.CONTINUOUS) -> Measured:
-    return Measured(parse_unit(unit).dimension, values, kind is Kind.DISCRETE)
+    return Measured(parse_unit(unit).dimension, values, kind is Kind.DISCRETE, unit)
