@@ -10,5 +10,5 @@ TITLES = ("required", "outcome", "what decides")
 
 def requirements_part(results: Sequence[RequirementResult]) -> Part:
     """A row for each requirement."""
-    rows = tuple((each.text, str(each.outcome), each.sentence) for each in results)
+    rows = tuple((each.text, str(each.outcome), each.detail) for each in results)
     return Part("Requirements", (Block("", table=Table(TITLES, rows, first=1, last=1)),))

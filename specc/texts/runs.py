@@ -1,6 +1,7 @@
 """Many recordings as text: a table, and why those that did not pass did not."""
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from spec_schema.diagnostics import render
 from specc.runs import (
@@ -35,6 +36,9 @@ BY_ITSELF = (
     "Each recording by itself: `--format json`, or `-o report.html`. A node FAILs where it fails"
     " in one recording, else it has the verdict on all together."
 )
+
+MOST_OPEN: Final = 3
+"""So many reasons are told of why a verdict is open."""
 
 
 def runs_table(runs: Runs) -> str:
@@ -222,10 +226,16 @@ def _report_row(report: Report, columns: Sequence[str]) -> tuple[str, ...]:
 
 
 def _why(outcome: Outcome) -> str:
-    """The first reason of what did not pass; empty for what did."""
+    """What decides about what did not pass; empty for what did."""
     if isinstance(outcome, Unusable):
         return "; ".join(d.message for d in outcome.error.diagnostics[:3])
     if isinstance(outcome, NotJudged):
         return outcome.why
     report = outcome.report
-    return "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])
+    match report.verdict:
+        case Verdict.PASS:
+            return ""
+        case Verdict.FAIL:
+            return "".join(report.reasons[:1])
+        case Verdict.INCONCLUSIVE:  # each of them leaves it open
+            return "; ".join(report.reasons[:MOST_OPEN])

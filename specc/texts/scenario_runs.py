@@ -19,7 +19,7 @@ from specc.verifying import Verification
 from specc.verifying_architecture import NotJudged
 from specc.verifying_recording import REQUIREMENTS
 from verifier.report.examination import Examination
-from verifier.report.report import Standing, Verdict
+from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.wording import quantity, seconds
 
@@ -114,10 +114,21 @@ def found_in(examination: Examination) -> str:
         return f"{share.agreeing} of {share.decisions} decisions agree"
     if not report.variables:
         return "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])
-    worst = min(report.variables, key=lambda result: STANDINGS.index(result.standing))
-    departure = quantity(worst.declared.departure, worst.unit)
-    allowed = f"{quantity(worst.tolerance, worst.unit)} allowed after {seconds(report.horizon)}"
-    return f"{worst.name} departs by {departure}, {allowed}: {worst.standing}"
+    worst = min((each.standing for each in report.variables), key=STANDINGS.index)
+    told = [_departs(report, each) for each in report.variables if each.standing is worst]
+    return "; ".join(told)
+
+
+def _departs(report: Report, result: VariableResult) -> str:
+    """By how much a variable departs, and whether standing still would have done as well."""
+    departure = quantity(result.declared.departure, result.unit)
+    allowed = f"{quantity(result.tolerance, result.unit)} allowed after {seconds(report.horizon)}"
+    if result.allowed_scatter > 0.0:
+        allowed += f" beside {quantity(result.allowed_scatter, result.unit)} of scatter"
+    weak = ""
+    if report.verdict is Verdict.PASS and result.hardly_moves:
+        weak = f" (weak evidence: it moved by {quantity(result.moved, result.unit)} only)"
+    return f"{result.name} departs by {departure}, {allowed}: {result.standing}{weak}"
 
 
 @final
@@ -146,7 +157,7 @@ def requirement_rows(every: Sequence[Verification]) -> Iterator[RequirementRow]:
 def _requirement_row(text: str, found: Sequence[tuple[str, RequirementResult]]) -> RequirementRow:
     if len(found) == 1:
         result = found[0][1]
-        return RequirementRow(text, result.outcome, str(result.outcome), (result.sentence,))
+        return RequirementRow(text, result.outcome, str(result.outcome), (result.detail,))
     outcomes = [result.outcome for _, result in found]
     worst = next(each for each in OUTCOMES if each in outcomes)
     count = f"{worst} in {outcomes.count(worst)} of {len(found)}"
@@ -154,8 +165,8 @@ def _requirement_row(text: str, found: Sequence[tuple[str, RequirementResult]]) 
     of_worst.sort(key=lambda each: each[1].robustness)
     if worst is Outcome.SATISFIED:
         source, result = of_worst[0]
-        return RequirementRow(text, worst, count, (f"least in {source}: {result.sentence}",))
-    told = [f"{source}: {result.sentence}" for source, result in of_worst[:MOST_TOLD]]
+        return RequirementRow(text, worst, count, (f"least in {source}: {result.detail}",))
+    told = [f"{source}: {result.detail}" for source, result in of_worst[:MOST_TOLD]]
     more = len(of_worst) - MOST_TOLD
     told += [f"and {more} more"] if more > 0 else []
     return RequirementRow(text, worst, count, tuple(told))

@@ -61,6 +61,7 @@ def variable(
         scatter=0.2 * tolerance,
         allowed_scatter=0.0,
         unjudged=0,
+        moved=10.0,
         mean=mean,
         mean_interval=around,
         regions=(region,),

@@ -130,6 +130,7 @@ class VariableResult:
     tolerance.
     mean: the signed mean error at the declared horizon over all windows.
     unjudged: windows in a discrete value that was seen too rarely to be judged on its own.
+    moved: how far the variable itself moved over the declared horizon, root mean square.
     regions: the parts; worst: the one that departs most surely, if any.
     errors: (W,) measured minus predicted at the declared horizon, NaN where a window has none.
     views: a few windows, in order of time.
@@ -146,6 +147,7 @@ class VariableResult:
     scatter: float
     allowed_scatter: float
     unjudged: int
+    moved: float
     mean: float
     mean_interval: Interval
     regions: tuple[RegionMean, ...]
@@ -158,6 +160,11 @@ class VariableResult:
     def declared(self) -> HorizonFigure:
         """The figure at the declared horizon."""
         return self.horizons[-1]
+
+    @property
+    def hardly_moves(self) -> bool:
+        """Whether a spec in which it stays where it is would do as well: weak evidence."""
+        return self.moved <= self.tolerance
 
 
 @final

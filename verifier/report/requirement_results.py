@@ -45,6 +45,11 @@ class RequirementResult:
     origin: str
 
     @property
+    def detail(self) -> str:
+        """The sentence without the outcome, for where that stands beside it."""
+        return self.sentence.removeprefix(str(self.outcome)).lstrip(":, ")
+
+    @property
     def robustness(self) -> float:
         """The bound that decides: by how much it surely holds, or surely does not."""
         return self.high if self.outcome is Outcome.VIOLATED else self.low

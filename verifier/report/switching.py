@@ -7,7 +7,7 @@ change from one mode to another.
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import final
+from typing import Final, final
 
 from runtime.program import Unit
 from verifier.report.report import Interval, Standing
@@ -58,6 +58,22 @@ class Switch:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Sample:
+    """What a mean over switches is of: values, the standard deviations of their noise.
+
+    bias: what their mean may be off by, whatever the count.
+    """
+
+    values: tuple[float, ...]
+    deviations: tuple[float, ...]
+    bias: float
+
+
+NO_SAMPLE: Final = Sample((), (), 0.0)
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Timing:
     """How late the robot takes one way, on average (s), against what the tolerance allows.
 
@@ -73,6 +89,7 @@ class Timing:
     basis: str
     resolution: float
     standing: Standing
+    sample: Sample = NO_SAMPLE
 
 
 @final
@@ -92,6 +109,7 @@ class Jump:
     interval: Interval
     tolerance: float
     standing: Standing
+    sample: Sample = NO_SAMPLE
 
 
 @final

@@ -9,6 +9,7 @@ from runtime.program import Unit
 YEAR: Final = 365.25 * 86400.0
 CENTURIES: Final = 200.0 * YEAR
 """Later than so many seconds after 1970 no robot was recorded."""
+MILLIMETRE: Final = Unit("mm", 1e-3)
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -31,12 +32,20 @@ def shown(value: float, unit: Unit) -> str:
 
 
 def quantity(value: float, unit: Unit) -> str:
-    """A value with its unit; a dimensionless one has none.
+    """A value with its unit; a dimensionless one has none, and a tiny length is in millimetres.
 
     >>> quantity(0.5, Unit("deg", 0.01745329)), quantity(0.5, Unit("1", 1.0))
     ('28.6 deg', '0.5')
+    >>> quantity(2.57e-05, Unit("m", 1.0))
+    '0.0257 mm'
     """
+    unit = _fine(abs(value), unit)
     return f"{shown(value, unit)}{suffix(unit)}"
+
+
+def _fine(size: float, unit: Unit) -> Unit:
+    """Millimetres for a length below one of them that would be told in metres."""
+    return MILLIMETRE if unit.text == "m" and 0.0 < size < MILLIMETRE.scale else unit
 
 
 def exact(value: float, unit: Unit) -> str:
@@ -53,12 +62,13 @@ def span(low: float, high: float, unit: Unit) -> str:
 
     >>> span(0.1, 0.2, Unit("m", 1.0)), span(291.72, 292.34, Unit("K", 1.0))
     ('0.1 to 0.2 m', '291.7 to 292.3 K')
-    >>> span(0.0, math.inf, Unit("m", 1.0))
-    '0 m or more'
+    >>> span(0.1, math.inf, Unit("m", 1.0)), span(0.0, math.inf, Unit("m", 1.0))
+    ('0.1 m or more', 'not known')
     """
-    ends = (low / unit.scale, high / unit.scale)
     if math.isinf(high):
-        return "not known" if math.isinf(low) else f"{quantity(low, unit)} or more"
+        return f"{quantity(low, unit)} or more" if low > 0.0 else "not known"
+    unit = _fine(max(abs(low), abs(high)), unit)
+    ends = (low / unit.scale, high / unit.scale)
     digits = digits_of(*ends)
     return f"{number(ends[0], digits)} to {number(ends[1], digits)}{suffix(unit)}"
 

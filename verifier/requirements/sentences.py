@@ -12,7 +12,7 @@ from runtime.arrays import Array, Booleans
 from runtime.program import Unit
 from runtime.requirement import Operator
 from verifier.report.requirement_results import Outcome, RequirementResult
-from verifier.report.wording import listed, number, quantity, suffix
+from verifier.report.wording import listed, number, quantity
 from verifier.requirements.course import Course, negated
 from verifier.requirements.robustness import Part
 from verifier.requirements.signals import Signal, Span, names_in
@@ -181,7 +181,7 @@ def _by(result: RequirementResult) -> str:
         return ""
     if robustness <= ROUNDING:
         return ", but exactly at its bound,"
-    return f" by {number(robustness / unit.scale)}{suffix(unit)}"
+    return f" by {quantity(robustness, unit)}"
 
 
 def _shown(name: str, time: float, told: Told) -> str:

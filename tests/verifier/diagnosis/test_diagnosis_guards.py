@@ -21,6 +21,7 @@ from verifier.fidelity.switching.thresholds import Number, agrees, share_by_othe
 from verifier.fidelity.verify import fidelity_of
 from verifier.report.diagnosis import CandidateKind, Diagnosis, ParameterKind, Told
 from verifier.report.report import Interval
+from verifier.report.switching import NO_SAMPLE
 
 SPECS = Path(__file__).parents[3] / "specs"
 
@@ -112,7 +113,7 @@ def test_a_guard_agrees_within_the_interval_of_its_own_switches(
 ) -> None:
     values = np.random.default_rng(5).normal(0.0, 1.0, count)
     half = 2.262157 * np.std(values, ddof=1) / np.sqrt(count)  # Student's t, nine degrees
-    mean = Mean(40, float(np.mean(values) + apart * half), Interval(-1.0, 1.0), 0.0, 0.5)
+    mean = Mean(40, float(np.mean(values) + apart * half), Interval(-1.0, 1.0), 0.0, 0.5, NO_SAMPLE)
 
     found = agrees((values, np.zeros(count), 0.0, 0.0), Number("x1", 0.0, (0,)), mean)
 

@@ -50,6 +50,7 @@ def result(  # as many as a variable has figures
         scatter=scatter,
         allowed_scatter=0.0,
         unjudged=0,
+        moved=10.0,
         mean=0.0,
         mean_interval=Interval(-0.001, 0.001),
         regions=() if worst is None else (worst,),

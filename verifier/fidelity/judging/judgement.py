@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runtime.arrays import Array
 from runtime.program import Fidelity, Kind
 from verifier.fidelity.judging.departure import Departure, departure_of, standing_of
 from verifier.fidelity.judging.evidence import Evidence, noise_of_all
@@ -57,6 +58,7 @@ def _result(evidence: Evidence, j: int, fidelity: Fidelity) -> VariableResult:
         scatter=judged.parts.scatter,
         allowed_scatter=scatter,
         unjudged=judged.parts.unjudged,
+        moved=_moved(every[-1].mean[kept] + every[-1].moved[kept]),
         mean=judged.mean,
         mean_interval=judged.mean_interval,
         regions=regions,
@@ -65,6 +67,11 @@ def _result(evidence: Evidence, j: int, fidelity: Fidelity) -> VariableResult:
         views=evidence.views[j],
         origin=state.origin,
     )
+
+
+def _moved(ways: Array) -> float:
+    """The root mean square of how far it moved (W,); nothing is known where it was not seen."""
+    return float(np.sqrt(np.mean(ways**2))) if ways.size else float("inf")
 
 
 def _departure(evidence: Evidence, errors: Errors, j: int) -> Departure:

@@ -56,27 +56,27 @@ def proportion(evidence: Evidence, result: VariableResult) -> list[str]:
 def within(result: VariableResult) -> str:
     """What a PASS claims."""
     figure, unit = result.declared, result.unit
-    beside = (
-        f", beside the scatter of {quantity(result.allowed_scatter, unit)} that the spec allows"
-        if result.allowed_scatter > 0.0
-        else ""
-    )
     return (
         f"{result.name} stays within {quantity(result.tolerance, unit)} over"
         f" {number(figure.horizon)} s: it departs by {quantity(figure.departure, unit)}, at most"
-        f" {quantity(figure.interval.high, unit)} (95 %){beside}"
+        f" {quantity(figure.interval.high, unit)} (95 %){_beside(result)}"
     )
 
 
-def unmoved(evidence: Evidence, result: VariableResult) -> list[str]:
+def _beside(result: VariableResult) -> str:
+    if result.allowed_scatter <= 0.0:
+        return ""
+    allowed = quantity(result.allowed_scatter, result.unit)
+    return f", beside the scatter of {allowed} that the spec allows"
+
+
+def unmoved(result: VariableResult) -> list[str]:
     """Whether a spec in which nothing moves would have passed as well."""
-    error, moved = _declared(evidence, result)
-    way = float(np.sqrt(np.mean((error + moved) ** 2)))
-    if way > result.tolerance:
+    if not result.hardly_moves:
         return []
     return [
         (
-            f"{result.name} itself moves by {quantity(way, result.unit)} in"
+            f"{result.name} itself moves by {quantity(result.moved, result.unit)} in"
             f" {number(result.declared.horizon)} s here: a spec in which it stays where it is would"
             " pass as well"
         )
@@ -88,11 +88,14 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
     figure, unit = result.declared, result.unit
     if figure.windows == 0:
         return f"{result.name} has no sample at the end of any window"
-    limit = float(np.hypot(result.tolerance, result.allowed_scatter))
+    limit = _allowed(result)
     departs = (
         f"{result.name} may or may not stay within {quantity(result.tolerance, unit)} over"
-        f" {number(figure.horizon)} s: it departs by {quantity(figure.departure, unit)}"
+        f" {number(figure.horizon)} s{_beside(result)}: it departs by"
+        f" {quantity(figure.departure, unit)}"
     )
+    if not np.isfinite(figure.interval.high):
+        return f"{departs}, and {_windows(figure.windows)} are too few to tell how surely"
     if figure.interval.low > limit:
         return (
             f"{departs}, but not alike in the same situation: windows scatter by"
@@ -118,9 +121,10 @@ def undecided(result: VariableResult, units: dict[str, Unit]) -> str:
 def too_noisy(result: VariableResult) -> list[str]:
     """That the noise of the sensors alone fills the tolerance, and what would help."""
     figure, unit = result.declared, result.unit
-    if figure.noise <= result.tolerance:
+    allowed = _allowed(result)
+    if figure.noise <= allowed:
         return []
-    quiet = [f.horizon for f in result.horizons if f.noise <= LOUD * result.tolerance]
+    quiet = [f.horizon for f in result.horizons if f.noise <= LOUD * allowed]
     early = result.horizons[0]
     grown = figure.noise / max(early.noise, 1e-300)
     growth = (
@@ -133,8 +137,8 @@ def too_noisy(result: VariableResult) -> list[str]:
     return [
         (
             f"the noise of the sensors makes {quantity(figure.noise, unit)} of {result.name} at the"
-            f" horizon, more than the {quantity(result.tolerance, unit)} allowed{growth}; {remedy}"
-            f"sensor {number(figure.noise / (LOUD * result.tolerance))} times as quiet, would tell"
+            f" horizon, more than the {quantity(allowed, unit)} allowed{growth}; {remedy}"
+            f"sensor {number(figure.noise / (LOUD * allowed))} times as quiet would tell"
         )
     ]
 
@@ -142,7 +146,7 @@ def too_noisy(result: VariableResult) -> list[str]:
 def allow_scatter(result: VariableResult) -> list[str]:
     """What to write where single runs scatter, and that is as it should be."""
     figure, unit = result.declared, result.unit
-    if figure.interval.low <= float(np.hypot(result.tolerance, result.allowed_scatter)):
+    if figure.interval.low <= _allowed(result):
         return []
     return [
         (
@@ -192,16 +196,21 @@ def _more(result: VariableResult) -> float:
 
     Of the departure; where that is decided, of the mean in the part that departs most surely.
     """
-    at = result.declared
-    if at.interval.low <= at.tolerance <= at.interval.high:
-        edge = at.interval.low if at.departure > at.tolerance else at.interval.high
-        far, gap = edge - at.departure, at.tolerance - at.departure
+    at, allowed = result.declared, _allowed(result)
+    if at.interval.low <= allowed <= at.interval.high:
+        edge = at.interval.low if at.departure > allowed else at.interval.high
+        far, gap = edge - at.departure, allowed - at.departure
     else:
         mean, interval = result.mean, result.mean_interval
         if result.worst is not None:
             mean, interval = result.worst.mean, result.worst.interval
         far, gap = 0.5 * (interval.high - interval.low), at.tolerance - abs(mean)
     return max(1.0, float((far / (gap or 1e-300)) ** 2))
+
+
+def _allowed(result: VariableResult) -> float:
+    """What single windows may depart by (root mean square): the tolerance, and the scatter."""
+    return float(np.hypot(result.tolerance, result.allowed_scatter))
 
 
 def scope(coverage: Coverage) -> str:

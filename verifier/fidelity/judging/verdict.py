@@ -54,7 +54,7 @@ def decide(
         advice = _advice(results, coverage, judged)
         return Finding(Verdict.INCONCLUSIVE, tuple(doubts), tuple(dict.fromkeys(advice)))
     reasons = [sentences.within(r) for r in results]
-    reasons += [sentence for r in results for sentence in sentences.unmoved(evidence, r)]
+    reasons += [sentence for r in results for sentence in sentences.unmoved(r)]
     if coverage.required == 0.0:
         reasons.append(sentences.scope(coverage))
     return Finding(Verdict.PASS, tuple(reasons), ())

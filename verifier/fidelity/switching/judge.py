@@ -123,6 +123,7 @@ def _timing(means: WayMeans, standings: dict[Mean, Standing]) -> Timing | None:
         basis=means.basis,
         resolution=means.resolution,
         standing=standings[late],
+        sample=late.sample,
     )
 
 
@@ -139,6 +140,7 @@ def _jump(
         interval=_interval(mean),
         tolerance=mean.allowed,
         standing=standings[mean],
+        sample=mean.sample,
     )
 
 

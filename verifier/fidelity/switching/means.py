@@ -14,6 +14,7 @@ from scipy import special
 
 from runtime.arrays import Array
 from verifier.report.report import Interval, Standing
+from verifier.report.switching import Sample
 
 CONFIDENCE = 0.95
 FEWEST = 3
@@ -25,7 +26,7 @@ FEWEST = 3
 class Mean:
     """A mean of `count` values; `chance` of one at least so far beyond `allowed`, were it not.
 
-    bias: what the mean may be off by, whatever the count.
+    sample: what it is a mean of.
     """
 
     count: int
@@ -33,14 +34,16 @@ class Mean:
     interval: Interval
     allowed: float
     chance: float
+    sample: Sample
 
 
 def mean_of(values: Array, deviations: Array, allowed: float, bias: float) -> Mean:
     """The mean of values (N,) with known `deviations` (N,) of their noise."""
     count = len(values)
     mean = float(np.mean(values))
+    sample = Sample(tuple(values.tolist()), tuple(deviations.tolist()), bias)
     if count < FEWEST:
-        return Mean(count, mean, Interval(-math.inf, math.inf), allowed, 1.0)
+        return Mean(count, mean, Interval(-math.inf, math.inf), allowed, 1.0, sample)
     spread = max(float(np.var(values, ddof=1)), float(np.mean(deviations**2)))
     error = math.sqrt(spread / count)
     freedom = float(count - 1)
@@ -50,7 +53,7 @@ def mean_of(values: Array, deviations: Array, allowed: float, bias: float) -> Me
         chance = 0.0 if beyond > 0.0 else 1.0
     else:
         chance = float(special.stdtr(freedom, -beyond / error))
-    return Mean(count, mean, Interval(mean - half, mean + half), allowed, chance)
+    return Mean(count, mean, Interval(mean - half, mean + half), allowed, chance, sample)
 
 
 def standings_of(means: list[Mean]) -> list[Standing]:
