@@ -35,6 +35,11 @@ class Signal:
     values: tuple[str, ...]
     origin: str
 
+    @property
+    def unsaid(self) -> float:
+        """What is read of it before it was said: 0, or the edge of its domain that is nearest."""
+        return min(max(0.0, self.low), self.high)
+
 
 @final
 @dataclass(frozen=True, slots=True)

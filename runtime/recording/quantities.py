@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from runtime.architecture import Signal
+from runtime.architecture import Node, Signal
 from runtime.arrays import Array
 from runtime.program import Kind, State, Unit
 from runtime.recording.tracks import NodeTrack, Quantity, RobotTrack, WorldTrack
@@ -14,16 +14,31 @@ from runtime.scenario import Robot
 
 METRES: Final = Unit("m", 1.0)
 RADIANS: Final = Unit("rad", 1.0)
+BEFORE: Final = 1.0 - 1e-9
+"""Of the end: what takes effect later than that takes none, for the last instant is not lived."""
+NONE_HOLDS: Final = -1.0
+"""A choice that is none."""
 
 
 def quantities_of(
     robots: Sequence[Robot], tracks: Sequence[RobotTrack], world: WorldTrack
 ) -> dict[str, Quantity]:
     """Every named quantity: of the world, then of each robot's sensors and nodes."""
+    end = _end(tracks, world)
     found = [*_of_world(world, [robot.name for robot in robots])]
     for robot, track in zip(robots, tracks, strict=True):
-        found += [*_of_sensors(robot, track), *_of_nodes(robot, track)]
+        found += [*_of_sensors(robot, track), *_of_nodes(robot, track, end)]
     return {quantity.name: quantity for quantity in found}
+
+
+def _end(tracks: Sequence[RobotTrack], world: WorldTrack) -> float:
+    """When the run ended: the world is looked at then, or of a torn recording the last that is told.
+
+    What a node says takes no effect from there on.
+    """
+    told = [world.close_times, world.times]
+    told += [each.times for track in tracks for each in (*track.sensors, *track.nodes)]
+    return max((float(times[-1]) for times in told if times.size), default=0.0)
 
 
 def _of_world(world: WorldTrack, robots: Sequence[str]) -> Iterator[Quantity]:
@@ -53,18 +68,30 @@ def _of_sensors(robot: Robot, track: RobotTrack) -> Iterator[Quantity]:
             place += 1
 
 
-def _of_nodes(robot: Robot, track: RobotTrack) -> Iterator[Quantity]:
+def _of_nodes(robot: Robot, track: RobotTrack, end: float) -> Iterator[Quantity]:
     board, programs = robot.architecture.board, robot.architecture.programs
     for node, ticks in zip(robot.architecture.nodes, track.nodes, strict=True):
-        later = ticks.times + node.response_time
         for column, place in enumerate(node.outputs):
-            values = _column(ticks, ticks.outputs, column)
-            yield _of_board(robot.name, board[place], later, values)
+            times, values = _in_effect(ticks, column, node, board[place], end)
+            yield _of_board(robot.name, board[place], times, values)
         for column, state in enumerate(
             programs[node.behavior].states if node.behavior >= 0 else ()
         ):
             name = f"{robot.name}.{node.name}.{state.name}"
             yield _of_state(name, state, ticks.times, _column(ticks, ticks.register, column))
+
+
+def _in_effect(
+    ticks: NodeTrack, column: int, node: Node, signal: Signal, end: float
+) -> tuple[Array, Array]:
+    """What the board says of an output: from when on, and what; first that nothing was said yet."""
+    later = ticks.times + node.response_time
+    reached = later < end * BEFORE
+    times, values = later[reached], _column(ticks, ticks.outputs, column)[reached]
+    if node.response_time == 0.0 or not ticks.times.size or ticks.times[0] > 0.0:
+        return times, values
+    unsaid = NONE_HOLDS if node.arbiter >= 0 and signal.values else signal.unsaid
+    return np.append(0.0, times), np.append(unsaid, values)
 
 
 def _of_board(robot: str, signal: Signal, times: Array, values: Array) -> Quantity:

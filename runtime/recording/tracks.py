@@ -12,7 +12,8 @@ from runtime.program import Kind, Unit
 class Quantity:
     """A named quantity of a run.
 
-    times: (T,) strictly increasing; of what a node tells, when it takes effect. values: (T,) SI.
+    times: (T,) strictly increasing. Of what a node tells: when it takes effect, which is before
+    the run ends, and 0 for what is read before that. values: (T,) SI.
     A discrete one is the index of one of `labels`, where it has such; -1 where none holds.
     low, high: its domain; a periodic one wraps there. is_held: it stays until its next sample.
     """

@@ -18,8 +18,8 @@ class Board:
     """
 
     def __init__(self, architecture: Architecture, sensors: Sequence[Sensor]) -> None:
-        first = [min(max(0.0, signal.low), signal.high) for signal in architecture.board]
-        self.values: Array = np.array(first, dtype=np.float64)
+        unsaid = [signal.unsaid for signal in architecture.board]
+        self.values: Array = np.array(unsaid, dtype=np.float64)
         counts = [len(sensor.readings) for sensor in sensors]
         ends = np.cumsum(counts).tolist()
         self._sensors = [slice(end - n, end) for end, n in zip(ends, counts, strict=True)]

@@ -13,6 +13,8 @@ import pytest
 from compiler.world.quantities_of_run import quantities_of
 from runtime.recording.scenario_run import recorded_run
 from runtime.run import LOOK, run
+from runtime.scenario import Scenario
+from runtime.start import started
 from runtime.world.layout import NoRoomError
 from tests.runtime.first_light import FILE, first_light, short_run
 from verifier.architectures.gathering import Gathered
@@ -76,9 +78,44 @@ def test_what_a_node_tells_stands_at_the_time_at_which_it_takes_effect() -> None
 
     turn = made.signals["r.seek.turn"]
 
-    assert np.array_equal(turn.times, ticks.times + node.response_time)
-    assert np.array_equal(turn.values, ticks.outputs[:, 0])
+    later = ticks.times + node.response_time
+    told = later < made.duration - 0.5 * made.scenario.step
+    assert not told.all()
+    assert np.array_equal(turn.times, [0.0, *later[told]])
+    assert np.array_equal(turn.values, [0.0, *ticks.outputs[told, 0]])
     assert np.array_equal(made.signals["r.seek.bearing"].times, ticks.times)
+
+
+@pytest.mark.parametrize("duration", [1.0, 1.0021])
+@pytest.mark.parametrize("response", [0.05, 0.2, 5.0])
+def test_nothing_is_told_after_the_end_and_all_is_known_from_the_beginning(
+    duration: float, response: float
+) -> None:
+    scenario = slow_to_answer(duration, response)
+    made = run(scenario)
+
+    for quantity in made.signals.values():
+        assert quantity.times[-1] <= made.duration, quantity.name
+        assert quantity.times[0] == 0.0, quantity.name
+    # What nodes could read at an instant is on their boards, which nobody asked for the quantities.
+    board = scenario.robots[0].architecture.board
+    begun = started(scenario)
+    for _ in range(round(made.duration / scenario.step)):
+        begun.scheduler.step()
+    left = begun.scheduler.agents[0].board.values
+    last = [made.signals[f"r.{signal.name}"].values[-1] for signal in board]
+    says = [place for place, signal in enumerate(board) if not signal.values]
+    assert np.array_equal(left[says], np.array(last)[says])
+
+
+def slow_to_answer(duration: float, response: float) -> Scenario:
+    """First light, with nodes that all answer so many seconds late."""
+    scenario = first_light(duration)
+    robot = scenario.robots[0]
+    nodes = [dataclasses.replace(n, response_time=response) for n in robot.architecture.nodes]
+    architecture = dataclasses.replace(robot.architecture, nodes=tuple(nodes))
+    robots = (dataclasses.replace(robot, architecture=architecture),)
+    return dataclasses.replace(scenario, robots=robots)
 
 
 def test_poses_end_where_speed_and_turn_lead() -> None:

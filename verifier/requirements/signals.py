@@ -56,10 +56,10 @@ class Span:
 
 
 def span_of(signals: Sequence[Signal], end: float | None) -> Span:
-    """From the first sample of any to the last of any, or to the `end` that is known."""
+    """From the first sample of any to the `end` that is known, or else to the last sample."""
     start = min(float(each.times[0]) for each in signals)
     last = max(float(each.times[-1]) for each in signals)
-    return Span(start, last if end is None else max(end, last))
+    return Span(start, last if end is None else end)
 
 
 def margins(
