@@ -64,10 +64,31 @@ def check_replaces(part: Part, parts: Parts, findings: Findings) -> None:
         elif parts.nodes[name].spec.replaces:
             message = f"'{name}' is a combined behavior itself"
             findings.error("S349", path, message, "name the behaviors that it combines")
+    _check_overlap(part, parts, findings)
     if len(part.spec.replaces) == 1:
         message = "a combined behavior stands for two or more"
         remedy = "name all that it combines"
         findings.error("S349", (*part.path, "replaces"), message, remedy)
+
+
+def _check_overlap(part: Part, parts: Parts, findings: Findings) -> None:
+    """A finding where another combined behavior, named before, could take away one of the parts."""
+    mine = part.spec.replaces
+    for name, other in parts.nodes.items():
+        if name == part.name:
+            return
+        theirs = other.spec.replaces
+        shared = next((one for one in mine if one in theirs), None)
+        if shared is not None and not (set(mine) <= set(theirs) or set(theirs) <= set(mine)):
+            findings.error(
+                "S349",
+                (*part.path, "replaces", mine.index(shared)),
+                f"{name} and {part.name} both combine '{shared}', and either may take it away "
+                "from the other",
+                f"let one of them combine all that the other does, such as "
+                f"[{', '.join(dict.fromkeys((*theirs, *mine)))}], or no node in common",
+            )
+            return
 
 
 def lower_choices(part: Part, parts: Parts, findings: Findings) -> tuple[Choice, ...]:

@@ -152,6 +152,20 @@ def test_a_combined_behavior_needs_no_further_resolution(make: Make) -> None:
     assert "S342" in codes(make(nodes))
 
 
+def test_of_combined_behaviors_the_one_that_holds_the_other_keeps_it_from_acting(
+    make: Make,
+) -> None:
+    nodes = {name: node("seek", SEEK) for name in ("a", "b", "c")}
+    nodes["two"] = node("seek", f"{SEEK}, replaces: [a, b]")
+    nodes["three"] = node("seek", f"{SEEK}, replaces: [a, b, c]")
+
+    exclusive = "{exclusive: [three, two, a, b, c]}"
+    channels = f"{{base.speed: {exclusive}, base.turn: {exclusive}}}"
+    assert codes(make(nodes, channels)) == set()
+    nodes["three"] = node("seek", f"{SEEK}, replaces: [b, c]")
+    assert "S349" in codes(make(nodes, channels))
+
+
 def test_two_on_one_channel_conflict_whatever_their_variables_are_called(make: Make) -> None:
     """Thesis, section 3.2.2: `heading` of one and `turn` of another both turn the wheels."""
     path = make({"avoid": node("avoid", AVOID), "veer": node("veer", "sense: {heading: 0}")})
