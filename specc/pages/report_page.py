@@ -81,7 +81,7 @@ def gathered(examination: Examination, prefix: str = "", *, is_drawn: bool = Tru
             _part(report, f"{prefix}v{i}", variable, is_drawn=is_drawn)
             for i, variable in enumerate(report.variables)
         ),
-        coverage=about_coverage(coverage),
+        coverage=() if _has_no_region(examination) else about_coverage(coverage),
         coverage_figure=coverage
         and plotted(draw_coverage(coverage), f"{prefix}coverage", how_to_read_coverage(coverage)),
         limits=limits_of_verdict(examination, prefix),
@@ -91,6 +91,11 @@ def gathered(examination: Examination, prefix: str = "", *, is_drawn: bool = Tru
         provenance=_provenance(report),
         advice=report.advice,
     )
+
+
+def _has_no_region(examination: Examination) -> bool:
+    """Of what is required of a run, and of decisions, no region is covered."""
+    return bool(examination.requirements) or examination.arbitration is not None
 
 
 def _overview(report: Report, prefix: str) -> Plot | None:
@@ -166,7 +171,7 @@ def _provenance(report: Report) -> tuple[tuple[str, str], ...]:
     trace = report.trace
     return (
         ("spec", f"{report.spec.name} ({report.spec.file})"),
-        ("spec text, SHA-256", report.spec.sha256),
+        *([("spec text, SHA-256", report.spec.sha256)] if report.spec.sha256 else []),
         ("trace", trace.source),
         ("recorded", _when(trace)),
         ("length", f"{seconds(trace.duration)}, of which {seconds(trace.judged)} were judged"),

@@ -28,7 +28,7 @@ from specc.texts.scenario_runs import (
 from specc.verifying import Verification
 from specc.verifying_architecture import NotJudged
 from verifier.report.examination_text import examination_text
-from verifier.report.layout import bullets, section, table, wrapped
+from verifier.report.layout import bullets, section, table, wide_table, wrapped
 from verifier.report.report import Report, Verdict
 from verifier.report.wording import percent, seconds, shown
 
@@ -78,10 +78,10 @@ def _scenarios(runs: Runs) -> Iterator[str]:
     required = [*requirement_rows(required_of(runs.outcomes))]
     if required:
         rows = [line for each in required for line in _lines(each)]
-        yield table([REQUIREMENT_TITLES, *rows])
+        yield wide_table([REQUIREMENT_TITLES, *rows])
     nodes = [*node_rows(runs)]
     if nodes:
-        yield table([NODE_TITLES, *nodes])
+        yield wide_table([NODE_TITLES, *nodes])
     if pools_of_nodes(runs):
         yield wrapped(BY_ITSELF, "")
 

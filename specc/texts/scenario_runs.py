@@ -116,6 +116,8 @@ def found_in(examination: Examination) -> str:
         return "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])
     worst = min((each.standing for each in report.variables), key=STANDINGS.index)
     told = [_departs(report, each) for each in report.variables if each.standing is worst]
+    if worst is Standing.WITHIN and report.verdict is not Verdict.PASS:
+        told.append("what else is open, or fails, is told below")
     return "; ".join(told)
 
 

@@ -33,6 +33,8 @@ from verifier.report.report import (
 )
 from verifier.traces.trace import Trace
 
+AGREED: Final = 0.98
+"""The share of decisions that must agree where an arbiter does not say."""
 VERDICTS: Final = {
     Standing.WITHIN: Verdict.PASS,
     Standing.EXCEEDED: Verdict.FAIL,
@@ -158,7 +160,7 @@ def _section(
 
 
 def _required(arbiter: Arbiter) -> float:
-    return 1.0 if arbiter.agreement is None else arbiter.agreement.share
+    return AGREED if arbiter.agreement is None else arbiter.agreement.share
 
 
 def _rules(arbiter: Arbiter) -> RuleChooser | None:

@@ -1,7 +1,8 @@
 """The constants of an arbiter that has to run (weights, a competition), found from decisions.
 
 Such an arbiter has no thresholds to take out of its conditions. Its constants are moved one by one,
-each by factors of its own value, and the arbiter is run again over all that was read.
+each by factors of its own value, and the arbiter is run again over all that was read. A constant
+of 0 has no scale of its own, and is left as it is.
 """
 
 from collections.abc import Callable, Sequence
@@ -60,7 +61,7 @@ def numbers_of(
     arbiter: Arbiter, running: Running, decisions: Decisions, agrees: Booleans, scales: Scales
 ) -> Numbers:
     """Each constant fitted by itself; the one that explains most is what is told as moved."""
-    lines = [_Line(arbiter, i, running, decisions) for i in range(len(arbiter.constants))]
+    lines = [_Line(arbiter, i, running, decisions) for i in _movable(arbiter)]
     fits = [line.best() for line in lines]
     found = [line.agrees(fit) for line, fit in zip(lines, fits, strict=True)]
     best = max(range(len(lines)), key=lambda i: int(found[i].sum()), default=None)
@@ -80,7 +81,7 @@ def slowness_of_numbers(
     wanted = max((1.0 - required) * float(decisions.judged.sum()), FEW)
     expected = chooser_of(arbiter, running)(decisions)
     times = []
-    for place in range(len(arbiter.constants)):
+    for place in _movable(arbiter):
         line = _Line(arbiter, place, running, decisions)
         for side in (FACTORS[FACTORS < 0.999][::-1], FACTORS[FACTORS > 1.001]):
             for factor in side:
@@ -90,6 +91,11 @@ def slowness_of_numbers(
                     times.append(slowness_of(changed.astype(float)))
                     break
     return max(times, default=np.inf)
+
+
+def _movable(arbiter: Arbiter) -> list[int]:
+    """The places of the constants that factors move."""
+    return [place for place, each in enumerate(arbiter.constants) if each.value != 0.0]
 
 
 @final

@@ -32,6 +32,8 @@ def reasons_of(section: Arbitration, verdict: Verdict) -> tuple[tuple[str, ...],
 
 def _longer(section: Arbitration) -> str:
     """How much of such a log would decide."""
+    if section.required >= 1.0:
+        return "PASS needs an `agreement` below 1: no log shows that every decision will agree"
     factor = times_longer(section.share, section.required, CONFIDENCE)
     if math.isinf(factor):
         return "record more changes of choice: decisions that go on tell little"

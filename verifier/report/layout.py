@@ -7,6 +7,10 @@ from typing import Final
 
 WIDTH: Final = 100
 INDENT: Final = "  "
+WIDEST: Final = 140
+"""Of a table whose last column holds sentences."""
+NARROWEST: Final = 40
+"""Of such a column."""
 NO_BREAK: Final = "\u00a0"
 
 
@@ -34,6 +38,21 @@ def section(title: str, blocks: Sequence[str]) -> str:
     """A title over its blocks; nothing where all of them are empty."""
     filled = [block for block in blocks if block]
     return "\n".join([title, *filled]) if filled else ""
+
+
+def wide_table(rows: Sequence[Sequence[str]]) -> str:
+    """A table whose last column holds sentences, on as many lines as they need."""
+    columns = range(len(rows[0]) - 1) if rows else range(0)
+    used = sum(max(len(row[i]) for row in rows) + 2 for i in columns)
+    width = max(WIDEST - used, NARROWEST)
+    return table([line for row in rows for line in _lines_of(row, width)])
+
+
+def _lines_of(row: Sequence[str], width: int) -> list[tuple[str, ...]]:
+    """A row, and under it the further lines of its last cell."""
+    first, *more = textwrap.wrap(row[-1], width, break_on_hyphens=False) or [""]
+    blank = [""] * (len(row) - 1)
+    return [(*row[:-1], first), *((*blank, f"  {line}") for line in more)]
 
 
 def table(rows: Sequence[Sequence[str]], indent: str = "") -> str:

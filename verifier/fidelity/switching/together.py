@@ -6,6 +6,7 @@ recordings are judged at once, way by way, with the statistics that one recordin
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from verifier.fidelity.switching.verdict import with_switching
 from verifier.report.report import Report, Standing
 from verifier.report.switching import Jump, Sample, Switching, Timing, Way
 
-WORST = (Standing.EXCEEDED, Standing.UNDECIDED, Standing.WITHIN)
+WORST: Final = (Standing.EXCEEDED, Standing.UNDECIDED, Standing.WITHIN)
+ROUNDING: Final = 1e-9
+"""Of what is allowed: so little is no difference."""
 
 
 def with_every_switching(
@@ -91,6 +94,7 @@ def _mean(samples: Sequence[tuple[Sample, float]], allowed: float) -> Mean:
     """The mean over all samples, each with its scale."""
     values = np.concatenate([scale * np.array(each.values) for each, scale in samples])
     deviations = np.concatenate([scale * np.array(each.deviations) for each, scale in samples])
+    values = np.where(np.abs(values) <= ROUNDING * allowed, 0.0, values)
     bias = max(scale * each.bias for each, scale in samples)
     return mean_of(values, deviations, allowed, bias)
 
