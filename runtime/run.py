@@ -3,13 +3,14 @@
 No clock of a computer is read: the same scenario and seed leave the same arrays, bit for bit.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias, final
 
 import numpy as np
 
-from runtime.arrays import Array, frozen
+from runtime.arrays import Array, Floats, frozen
 from runtime.recording.gathering import Gathering
 from runtime.recording.quantities import quantities_of
 from runtime.recording.tracks import (
@@ -39,7 +40,11 @@ Seen: TypeAlias = Callable[[float, Array], None]
 LOOK: Final = 0.02
 """Seconds between two looks at where all are, at most; how near robots come is seen each step."""
 CELL: Final = 0.05
-"""Metres: the width of a cell of the light on the floor."""
+"""Metres: the least width of a cell of the light on the floor."""
+MOST_CELLS: Final = 400
+"""So many cells lie side by side at most: of a large floor they are wider."""
+MOST_FRAMES: Final = 300
+"""So many pictures of that light are kept at most: of a long run they are farther apart."""
 TOLD: Final = 200
 """How often progress is told."""
 
@@ -87,7 +92,8 @@ def run(
         learners: by `robot.node`, what decides instead of the arbiter that is there.
         observer: is told everything as it happens.
         progress: is told a few hundred times how far it is.
-        light_every: seconds between two pictures of the light on the floor; None for none.
+        light_every: seconds between two pictures of the light on the floor, at least; None for
+            none.
         seen: is told where all are, each time that the run looks.
 
     Raises:
@@ -155,10 +161,10 @@ class _Watch:
         self._map: LightMap | None = None
         self._map_every = 0
         self._map_at: list[int] = []
-        self._lux: list[Array] = []
+        self._lux: list[Floats] = []
         if light_every is not None:
-            self._map_every = max(round(light_every / scenario.step), 1)
-            self._map = senses.light_map(_cells(scenario.world.arena))
+            self._map_every = steps_between_frames(scenario, light_every)
+            self._map = senses.light_map(cells_of(scenario.world.arena))
 
     def look(self, *, last: bool = False) -> None:
         """Look, at what is due at this instant."""
@@ -177,7 +183,7 @@ class _Watch:
             world.geometry()
             self._map.update()
             self._map_at.append(steps)
-            self._lux.append(self._map.lux.copy())
+            self._lux.append(self._map.lux.astype(np.float32))
 
     def _touching(self, robot: int) -> int:
         """How many others a robot touches; remember where it begins to."""
@@ -209,11 +215,24 @@ class _Watch:
         if self._map is None:
             return None
         times = frozen(np.array(self._map_at, dtype=np.float64) * self._step)
-        return LightFrames(self._map.xs, self._map.ys, times, frozen(np.array(self._lux)))
+        lux = np.array(self._lux)
+        lux.setflags(write=False)
+        return LightFrames(self._map.xs, self._map.ys, times, lux)
 
 
-def _cells(arena: tuple[tuple[float, float], ...]) -> tuple[int, int]:
-    """So many cells along x and y."""
-    corners = np.array(arena)
-    wide, high = np.ptp(corners, axis=0)
-    return max(round(wide / CELL), 1), max(round(high / CELL), 1)
+def cells_of(arena: tuple[tuple[float, float], ...]) -> tuple[int, int]:
+    """So many cells of the light on the floor lie along x and y."""
+    wide, high = np.ptp(np.array(arena), axis=0)
+    cell = max(CELL, float(max(wide, high)) / MOST_CELLS)
+    return max(round(wide / cell), 1), max(round(high / cell), 1)
+
+
+def steps_between_frames(scenario: Scenario, light_every: float) -> int:
+    """How many steps lie between two pictures of the light on the floor.
+
+    light_every: seconds that are wanted between two; a long run has them farther apart, by a whole
+    multiple.
+    """
+    steps = max(round(light_every / scenario.step), 1)
+    frames = scenario.duration / (steps * scenario.step)
+    return steps * max(math.ceil(frames / MOST_FRAMES), 1)

@@ -7,7 +7,7 @@ take.
 import math
 from typing import Final
 
-from runtime.run import CELL, LOOK
+from runtime.run import LOOK, cells_of, steps_between_frames
 from runtime.scenario import Robot, Scenario
 
 MOST: Final = 4e9
@@ -23,6 +23,8 @@ OF_COMMAND: Final = 500.0
 OF_CHANNEL: Final = 300.0
 OF_NUMBER: Final = 16.0
 """Bytes of a number: as it is gathered, and as it is kept."""
+OF_CELL: Final = 8.0
+"""Bytes of a cell of a picture of light, as it is gathered, and as it is kept: of half the size."""
 
 
 def bytes_of(scenario: Scenario, light_every: float | None = None) -> float:
@@ -37,9 +39,9 @@ def bytes_of(scenario: Scenario, light_every: float | None = None) -> float:
     rate += (OF_LOOK + OF_POSE * movers) / look
     frames = 0.0
     if light_every is not None:
-        xs, ys = zip(*world.arena, strict=True)
-        cells = (max(xs) - min(xs)) * (max(ys) - min(ys)) / CELL**2
-        frames = cells * OF_NUMBER * (scenario.duration / light_every + 1.0)
+        columns, rows = cells_of(world.arena)
+        every = steps_between_frames(scenario, light_every) * scenario.step
+        frames = columns * rows * OF_CELL * (scenario.duration / every + 1.0)
     return rate * scenario.duration + frames
 
 

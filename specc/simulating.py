@@ -109,10 +109,7 @@ def _refuse_too_large(scenario: Scenario, light_every: float | None) -> None:
         f"a run of {scenario.duration:.12g} s takes about {gigabytes(takes)} of memory, "
         f"of which {gigabytes(MOST)} are allowed"
     )
-    remedy = "take a shorter --duration"
-    if bytes_of(scenario) <= MOST / 2.0:
-        remedy += ", or a smaller arena: most of it is the light on its floor"
-    raise fault("V383", scenario.source.file, message, remedy)
+    raise fault("V383", scenario.source.file, message, "take a shorter --duration")
 
 
 def _no_room(scenario: Scenario, error: NoRoomError) -> SpecError:

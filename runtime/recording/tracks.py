@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import final
 
-from runtime.arrays import Array, Booleans
+from runtime.arrays import Array, Booleans, Floats
 from runtime.program import Kind, Unit
 
 
@@ -132,7 +132,7 @@ class LightFrames:
     xs: Array
     ys: Array
     times: Array
-    lux: Array
+    lux: Floats
 
 
 @final

@@ -6,7 +6,7 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.arrays import Array, Booleans, Integers
+from runtime.arrays import Array, Booleans, Floats, Integers
 from runtime.world.model import Shape
 
 NOBODY: Final = -1
@@ -65,7 +65,7 @@ class Glow:
     xs: Array
     ys: Array
     times: Array
-    lux: Array
+    lux: Floats
 
     def at(self, time: float) -> int:
         """Which of the times is the last one up to `time`; the first one before all."""

@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from google.protobuf.message import DecodeError
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from zstandard import ZstdError
 
-from runtime.arrays import Array
+from runtime.arrays import Array, Floats
 from runtime.container import ArtifactError
 from runtime.recording.foxglove import classes
 from runtime.recording.tracks import LightFrames
@@ -51,7 +50,7 @@ def recorded_floor(trace: Path) -> LightFrames | None:
     return LightFrames(xs, ys, np.array(times), np.array(frames))
 
 
-def _lux(grid: Any) -> npt.NDArray[np.float32]:
+def _lux(grid: Any) -> Floats:
     """Lux (ny, nx) of one message.
 
     Raises:
