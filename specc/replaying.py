@@ -107,9 +107,11 @@ def _happened(trace: Path, carried: Carried) -> Happened:
         raise ArtifactError(problem)
     assert carried.document is not None
     robots = {robot.name for robot in carried.robots}
-    told = {each.robot for each in (*happened.touches, *happened.jams)} - robots
-    if told:
-        raise ArtifactError(f"it tells of a robot '{min(told)}', which has no architecture")
+    told = {touch.robot for touch in happened.touches} | {jam.robot for jam in happened.jams}
+    if told - robots:
+        raise ArtifactError(
+            f"it tells of a robot '{min(told - robots)}', which has no architecture"
+        )
     carriers = {light.on for light in carried.document.world.lights if light.on}
     missing = carriers - {thing.name for thing in happened.things}
     if missing:

@@ -12,6 +12,7 @@ from runtime.container import ArtifactError
 from runtime.program import Program
 from runtime.requirement import Requirement
 from runtime.scenario import Robot, Start
+from runtime.scenario_artifact import faults_of_times
 from runtime.world.model import Body
 from spec_schema.diagnostics import SpecError
 from spec_schema.suggest import did_you_mean
@@ -95,10 +96,16 @@ def carried_by(trace: Path) -> Carried | None:
     if not robots:
         return None
     try:
-        return Carried(tuple(robots), attached_scenario(trace))
+        document = attached_scenario(trace)
     except ArtifactError as error:
-        message = f"the attached scenario can't be used: {error}"
-        raise fault(DAMAGED, trace, message, "record it again") from error
+        raise _damaged_scenario(trace, str(error)) from error
+    for problem in () if document is None else faults_of_times(robots, document.step):
+        raise _damaged_scenario(trace, problem)
+    return Carried(tuple(robots), document)
+
+
+def _damaged_scenario(trace: Path, why: str) -> SpecError:
+    return fault(DAMAGED, trace, f"the attached scenario can't be used: {why}", "record it again")
 
 
 def _refuse_damaged(trace: Path) -> None:

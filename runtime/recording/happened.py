@@ -46,7 +46,7 @@ def from_bytes(data: bytes) -> Happened:
         if document["format"] != FORMAT:
             raise ArtifactError(f"its format is {document['format']}, this is {FORMAT}")
         found: Happened = from_plain(Happened, document["happened"], "happened", _no_table)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise ArtifactError("it does not tell what happened in a run") from error
     return found
 
