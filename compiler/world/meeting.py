@@ -4,18 +4,21 @@ from collections.abc import Sequence
 from typing import Final
 
 from compiler.findings import Findings
-from compiler.world.overlap import overlap, within
+from compiler.world.overlap import narrowest, overlap, within
 from runtime.scenario import Robot
-from runtime.world.model import Sensor, World
+from runtime.world.model import Polygon, Sensor, Shape, World
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, there_are
 
 LIGHT: Final = "light"
+LEEWAY: Final = 1e-3
+"""Relative: what widths miss that are measured a degree apart."""
 
 
 def check_starts(world: World, robots: Sequence[Robot], findings: Findings) -> None:
     """A finding for each robot that would start in a wall, a thing, or another robot."""
-    for i, robot in enumerate(robots):
+    fitting = [robot for robot in robots if _fits(robot, world, findings)]
+    for i, robot in enumerate(fitting):
         pose, body = robot.start.pose, robot.body
         if pose is None:
             continue
@@ -29,12 +32,28 @@ def check_starts(world: World, robots: Sequence[Robot], findings: Findings) -> N
             if meets and overlap(body.shape, pose, thing.shape, thing.pose):
                 message = f"{robot.name} would start inside {thing.name}"
                 findings.error("S327", path, message, remedy)
-        for other in robots[:i]:
+        for other in fitting[:i]:
             at, its = other.start.pose, other.body
             meets = its.low < body.high and body.low < its.high
             if at is not None and meets and overlap(body.shape, pose, its.shape, at):
                 message = f"{robot.name} would start inside {other.name}"
                 findings.error("S327", path, message, remedy)
+
+
+def _fits(robot: Robot, world: World, findings: Findings) -> bool:
+    """Whether there is a place for a robot between the walls; a finding where there is none."""
+    wide = narrowest(robot.body.shape)
+    floor = narrowest(Shape((), (Polygon(world.arena),)))
+    if wide <= floor * (1.0 + LEEWAY):
+        return True
+    body, file = robot.body.name, robot.body.source.file
+    message = (
+        f"{robot.name} fits nowhere into {world.name}: its body {body} is {wide:.4g} m wide where "
+        f"it is narrowest, and the arena {floor:.4g} m"
+    )
+    remedy = f"see 'shape' in {file}: a plain number there is in metres, so write '15 cm' for 0.15"
+    findings.error("S327", ("robots", robot.name, "architecture"), message, remedy)
+    return False
 
 
 def check_sights(world: World, robots: Sequence[Robot], findings: Findings) -> None:

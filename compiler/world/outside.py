@@ -1,7 +1,9 @@
-"""Things, lights and areas that lie outside of the walls, where nothing of a run ever comes."""
+"""Things, lights and areas that lie where nothing can: outside of the walls, or in one another."""
+
+from itertools import combinations
 
 from compiler.findings import Findings
-from compiler.world.overlap import overlap_floor, within
+from compiler.world.overlap import overlap, overlap_floor, within
 from compiler.world.shapes import HERE, Corners
 from runtime.world.model import Disc, Light, Polygon, Scatter, Shape, Thing, World
 from spec_schema.places import Path
@@ -11,6 +13,8 @@ def check_inside(world: World, findings: Findings) -> None:
     """A finding for each thing, light and area of a scatter that is not where the floor is."""
     for thing in world.things:
         _check_thing(thing, world, findings)
+    for one, other in combinations(world.things, 2):
+        _check_apart(one, other, findings)
     for light in world.lights:
         _check_light(light, world, findings)
     for scatter in world.scattered:
@@ -26,6 +30,17 @@ def _check_thing(thing: Thing, world: World, findings: Findings) -> None:
     elif not thing.is_fixed and not within(thing.shape, thing.pose, world.arena):
         message = f"{thing.name} would start in a wall of {world.name}"
         findings.error("S327", path, message, "move it, or write 'fixed: true'")
+
+
+def _check_apart(one: Thing, other: Thing, findings: Findings) -> None:
+    """What is fixed may be made of several things; what moves would be pushed out at once."""
+    meets = one.low < other.high and other.low < one.high
+    if one.is_fixed and other.is_fixed:
+        return
+    if meets and overlap(one.shape, one.pose, other.shape, other.pose):
+        moving, still = (other, one) if one.is_fixed else (one, other)
+        message = f"{moving.name} would start inside {still.name}"
+        findings.error("S327", ("things", moving.name, "at"), message, "move one of them")
 
 
 def _check_light(light: Light, world: World, findings: Findings) -> None:

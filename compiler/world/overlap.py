@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Final, TypeAlias
 
-from compiler.world.shapes import Corners, placed
+from compiler.world.shapes import HERE, Corners, placed
 from runtime.world.model import Pose, Shape
 
 Part: TypeAlias = tuple[Corners, float]
@@ -47,6 +47,18 @@ def overlap_floor(shape: Shape, at: Pose, arena: Corners) -> bool:
         if any(_depth((corners, radius), (wall, 0.0)) > TOUCHING for wall in walls):
             return True
     return False
+
+
+def narrowest(shape: Shape) -> float:
+    """The least width (m) of a footprint, over directions a degree apart."""
+    parts = tuple(_parts(shape, HERE))
+    return min(_width(parts, math.radians(angle)) for angle in range(180))
+
+
+def _width(parts: tuple[Part, ...], angle: float) -> float:
+    cos, sin = math.cos(angle), math.sin(angle)
+    along = [(x * cos + y * sin, radius) for corners, radius in parts for x, y in corners]
+    return max(at + radius for at, radius in along) - min(at - radius for at, radius in along)
 
 
 def _parts(shape: Shape, at: Pose) -> Iterator[Part]:

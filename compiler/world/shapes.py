@@ -41,6 +41,12 @@ def pose_of(at: tuple[float | str, ...], path: Path, findings: Findings) -> Pose
     """A place and a direction."""
     x, y = (length(value, (*path, i), findings) for i, value in enumerate(at[:2]))
     turned = at[2] if len(at) > 2 else 0.0
+    if not isinstance(turned, str) and abs(turned) > math.tau:
+        message = (
+            f"a plain number is in radians, and {turned:g} rad is {turned / math.tau:.3g} turns"
+        )
+        remedy = f"write '{turned:g} deg', or '{turned:g} rad' if that is meant"
+        findings.error("S212", (*path, 2), message, remedy)
     return Pose(x, y, si_value(turned, RADIAN, (*path, 2), findings) or 0.0)
 
 

@@ -1,5 +1,6 @@
 """Worlds in SI: the arena, the things in it, its lights."""
 
+import math
 from typing import Final
 
 from compiler.findings import Findings
@@ -20,10 +21,11 @@ from compiler.world.shapes import (
 )
 from compiler.world.size import check_heights
 from runtime.world.model import Light, Pose, Scatter, Thing, World
+from spec_schema.faults import UnitFault
 from spec_schema.load import Loaded
 from spec_schema.places import Path
 from spec_schema.suggest import did_you_mean, there_are
-from spec_schema.units import parse_unit
+from spec_schema.units import parse_quantity, parse_unit
 from spec_schema.world import ArenaSpec, LightSpec, ScatterSpec, ThingSpec, WorldSpec
 
 LUX: Final = parse_unit("lx")
@@ -190,6 +192,8 @@ def _light(
             remedy = "only a thing with a place of its own can carry a light"
         message = f"no thing is named '{spec.on}'"
         findings.error("S322", (*path, "on"), message, remedy)
+    if isinstance(spec.power, str) and spec.power.rstrip().endswith("lm"):
+        _refuse_lumen(spec.power, (*path, "power"), findings)
     return Light(
         name=name,
         on=spec.on or "",
@@ -199,3 +203,14 @@ def _light(
         cone=positive(spec.cone, "rad", "a cone", (*path, "cone"), findings),
         origin=loaded.origin(path),
     )
+
+
+def _refuse_lumen(power: str, path: Path, findings: Findings) -> None:
+    """Lumen and candela are alike in dimension: what a light gives in all, and in a direction."""
+    try:
+        candela = parse_quantity(power).value / (4.0 * math.pi)
+    except UnitFault:
+        return  # which is told with its unit
+    message = "the power of a light is in candela, which is lumen per steradian"
+    remedy = f"write '{candela:.3g} cd' if it shines all round: 1 cd all round is 4 pi lm"
+    findings.error("S125", path, message, remedy)
