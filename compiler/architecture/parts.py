@@ -64,7 +64,7 @@ class Part:
 
     @property
     def lag(self) -> float:
-        """The longest time (s) from a change of the world to an action that answers it."""
+        """The longest time (s) from a sample to the end of the action that answers it."""
         return self.period + self.response_time
 
 

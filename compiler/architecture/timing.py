@@ -1,20 +1,20 @@
-"""Time: what is too slow for the field that it serves, and the step that all times share."""
+"""Time: what is too slow for the field that it serves."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Final, final
 
 import numpy as np
 
+from compiler.architecture.ages import Age, Readings, age_of
 from compiler.architecture.parts import Part, Parts, is_read
+from compiler.architecture.times import check_common_step, seconds
 from compiler.findings import Findings
-from runtime.architecture import Choice, Input
+from runtime.architecture import Choice, Input, Signal
 from runtime.arrays import Array
 from runtime.flow import Source, flow_of, in_one_mode, jacobian
 from runtime.program import Kind, Program
-from spec_schema.places import Path
 
 MOST: Final = 0.5
 """Of lag * rate. Late feedback x' = -k x(t - lag) overshoots from k * lag = 1/e = 0.37 on and is
@@ -25,10 +25,6 @@ SLACK: Final = 1e-6
 """Relative: what differences miss of a Jacobian."""
 POINTS: Final = 600
 SEED: Final = 20261122
-LEAST_STEP: Final = Fraction(1, 10_000)
-"""Seconds: below this a step of the world costs more than it tells."""
-FINEST: Final = 10**7
-"""Times are read as fractions of a second with at most this denominator."""
 
 
 @final
@@ -42,11 +38,13 @@ class Fastest:
 
 def check_timing(
     inputs: Mapping[str, tuple[Input, ...]],
+    signals: Sequence[Signal],
     choices: Mapping[str, tuple[Choice, ...]],
     parts: Parts,
     findings: Findings,
 ) -> None:
     """Findings for nodes that are too slow, and for times that no common step divides."""
+    readings = Readings(inputs, signals, parts)
     for part in parts.nodes.values():
         program = _field_of(part)
         if program is None or part.period == 0.0:
@@ -61,8 +59,8 @@ def check_timing(
             }
             reach = reach_of(part, inputs, choices, parts)
             fastest = fastest_of(program, unset | reach if part.arbiter else reach)
-            _check_lag(part, program, fastest, findings)
-    _check_common_step(parts, findings)
+            _check_lag(_Answer(part, program, readings), fastest, findings)
+    check_common_step(parts, findings)
 
 
 def _field_of(part: Part) -> Program | None:
@@ -104,29 +102,65 @@ def _fed_back(program: Program) -> list[int]:
     ]
 
 
-def _check_lag(part: Part, program: Program, fastest: Fastest, findings: Findings) -> None:
-    if fastest.rate * part.lag <= MOST * (1.0 + SLACK):
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Answer:
+    """A node with a field that feeds back, and what that reads."""
+
+    part: Part
+    program: Program
+    readings: Readings
+
+    def age(self, period: float) -> Age:
+        """Of the oldest reading that the field feeds back, were this the node's period."""
+        names = [self.program.states[place].name for place in _fed_back(self.program)]
+        return age_of(self.part.name, names, period, self.readings)
+
+    def fits(self, period: float, response: float, allowed: float) -> bool:
+        """Whether it would answer within the time that is allowed."""
+        return period + response + self.age(period).seconds <= allowed * (1.0 + SLACK)
+
+
+def _check_lag(answer: _Answer, fastest: Fastest, findings: Findings) -> None:
+    """A finding where a node acts on what is too old for its field when its act ends."""
+    part, age = answer.part, answer.age(answer.part.period)
+    lag = part.lag + age.seconds
+    if fastest.rate * lag <= MOST * (1.0 + SLACK):
         return
-    units = {variable.name: variable.unit for variable in program.states}
+    units = {variable.name: variable.unit for variable in answer.program.states}
     where = ", ".join(
         f"{name} = {value / units[name].scale:.3g} {units[name].text}".removesuffix(" 1")
         for name, value in fastest.where.items()
     )
-    allowed = MOST / fastest.rate
+    through = f" (through {' and '.join(age.through)})" if age.through else ""
+    old = f", {seconds(age.seconds)} of it since {age.sensor} sampled{through}"
     message = (
-        f"{part.name} answers up to {seconds(part.lag)} late, and its field changes at up to "
-        f"{fastest.rate:.3g} per second (at {where})"
+        f"{part.name} answers up to {seconds(lag)} late{old if age.seconds else ''}, and its field "
+        f"changes at up to {fastest.rate:.3g} per second (at {where})"
     )
-    response, at = part.response_time, "period"
-    if response < 0.8 * allowed:
-        remedy = f"write 'period: {seconds(_rounded(allowed - response))}' or less"
-    elif part.period < 0.8 * allowed:
-        remedy = f"write 'response_time: {seconds(_rounded(allowed - part.period))}' or less"
-        at = "response_time"
-    else:
-        half = seconds(_rounded(allowed / 2))
-        remedy = f"write 'period: {half}' and 'response_time: {half}' or less"
+    at, remedy = _remedy(answer, MOST / fastest.rate)
     findings.error("S353", (*part.path, at), message, f"{remedy}, or lower its gains")
+
+
+def _remedy(answer: _Answer, allowed: float) -> tuple[str, str]:
+    """What to write, and in which place, to be within the time that is allowed."""
+    part, age = answer.part, answer.age(answer.part.period)
+    spare, response = allowed - age.seconds, part.response_time
+    if spare < 0.2 * allowed:
+        late = " and ".join((f"the sensor {age.sensor}", *age.through))
+        times = "`latency` or `every`"
+        return "period", f"let {late} say sooner ({times} in its body)"
+    if response < 0.8 * spare:
+        period = _rounded(spare - response)
+        if answer.fits(period, response, allowed):
+            return "period", f"write 'period: {seconds(period)}' or less"
+    if part.period < 0.8 * spare:
+        later = seconds(_rounded(spare - part.period))
+        return "response_time", f"write 'response_time: {later}' or less"
+    half = _rounded(spare / 2)
+    while not answer.fits(half, half, allowed) and half > 0.05 * allowed:
+        half = _rounded(half / 2)
+    return "period", f"write 'period: {seconds(half)}' and 'response_time: {seconds(half)}' or less"
 
 
 def fastest_of(program: Program, reach: Mapping[str, tuple[float, float]]) -> Fastest:
@@ -202,59 +236,3 @@ def _rounded(value: float) -> float:
     """A time that is easy to write: two digits, rounded down."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return math.floor(value / digit + 1e-9) * digit
-
-
-def seconds(value: float) -> str:
-    """A time as one writes it.
-
-    >>> seconds(0.05), seconds(2.0)
-    ('50 ms', '2 s')
-    """
-    return f"{value:.4g} s" if value >= 1.0 else f"{1000 * value:.4g} ms"
-
-
-def exact(value: float) -> Fraction:
-    """A time as the fraction that was meant: 1/30 s is no whole number of nanoseconds."""
-    return Fraction(value).limit_denominator(FINEST)
-
-
-def common(times: Iterable[Fraction]) -> Fraction:
-    """The longest time that divides all of them; 0 where there are none."""
-    found = Fraction(0)
-    for time in times:
-        denominator = math.lcm(found.denominator, time.denominator)
-        whole = math.gcd(
-            found.numerator * (denominator // found.denominator),
-            time.numerator * (denominator // time.denominator),
-        )
-        found = Fraction(whole, denominator)
-    return found
-
-
-def times_of(parts: Parts) -> list[tuple[Path, float]]:
-    """Every time that the step must divide, and where it stands; sensors' at the body."""
-    sensors = () if parts.body is None else parts.body.body.sensors
-    of_body: Path = ("body",)
-    found = [(of_body, time) for s in sensors for time in (s.every, s.latency)]
-    for part in parts.nodes.values():
-        found += [((*part.path, "period"), part.period)]
-        found += [((*part.path, "response_time"), part.response_time)]
-    return found
-
-
-def _check_common_step(parts: Parts, findings: Findings) -> None:
-    """A finding at the first time that leaves no step of 0.1 ms."""
-    shared = Fraction(0)
-    for path, time in times_of(parts):
-        if time == 0.0:
-            continue
-        with_it = common((shared, exact(time)))
-        if with_it < LEAST_STEP:
-            message = f"no step of 0.1 ms or more divides {seconds(time)} and the times before it"
-            remedy = "write times that are multiples of one another, or of 1 ms"
-            if shared:
-                near = max(round(exact(time) / shared), 1) * shared
-                remedy = f"write {seconds(float(near))}"
-            findings.error("S352", path, message, remedy)
-            return
-        shared = with_it

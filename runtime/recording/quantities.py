@@ -32,12 +32,13 @@ def quantities_of(
 
 
 def _end(tracks: Sequence[RobotTrack], world: WorldTrack) -> float:
-    """When the run ended: the world is looked at then, or of a torn recording the last that is told.
+    """When the run ended, at which the world is looked at; of a torn recording what is told last.
 
     What a node says takes no effect from there on.
     """
     told = [world.close_times, world.times]
-    told += [each.times for track in tracks for each in (*track.sensors, *track.nodes)]
+    told += [sensor.times for track in tracks for sensor in track.sensors]
+    told += [node.times for track in tracks for node in track.nodes]
     return max((float(times[-1]) for times in told if times.size), default=0.0)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.architecture.timing import common, exact
+from compiler.architecture.times import common, exact
 from compiler.check import check
 from compiler.world.overlap import overlap, overlap_floor, within
 from compiler.world.scenario import CompiledScenario, compile_scenario
