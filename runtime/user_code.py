@@ -39,6 +39,13 @@ def load_callee(text: str, beside: Path) -> Callee:
     return found
 
 
+def where_is(text: str, beside: Path) -> str:
+    """The file that `load_callee` would run, or which installed package, in words."""
+    module_name = text.partition(":")[0]
+    path = _file_of(module_name, beside)
+    return str(path) if path.is_file() else f"no file of {beside}, but an installed package"
+
+
 def call(text: str, callee: Callee, *arguments: object) -> object:
     """What the user's function returns.
 
@@ -57,16 +64,26 @@ def load_module(name: str, beside: Path) -> ModuleType:
     Raises:
         Exception: whatever it raises while it is imported.
     """
-    path = beside / Path(*name.split(".")).with_suffix(".py")
+    path = _file_of(name, beside)
     if not path.is_file():
         return importlib.import_module(name)
     spec = importlib.util.spec_from_file_location(f"_of_a_spec_{name.replace('.', '_')}", path)
     assert spec is not None, "a .py file has a loader"
     assert spec.loader is not None, "a .py file has a loader"
     module = importlib.util.module_from_spec(spec)
-    with _importable(beside):
-        spec.loader.exec_module(module)
+    # Dataclasses look their module up by name while it is imported.
+    sys.modules[spec.name] = module
+    try:
+        with _importable(beside):
+            spec.loader.exec_module(module)
+    except BaseException:
+        sys.modules.pop(spec.name, None)
+        raise
     return module
+
+
+def _file_of(module: str, beside: Path) -> Path:
+    return beside / Path(*module.split(".")).with_suffix(".py")
 
 
 @contextmanager
