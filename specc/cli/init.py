@@ -5,11 +5,12 @@ from typing import Annotated
 
 import typer
 
+from spec_schema.wording import listed
 from specc.cli.console import print_text, say
 
 
 def init(
-    name: Annotated[str, typer.Argument(help="The name of the new behavior.", metavar="NAME")] = "",
+    name: Annotated[str, typer.Argument(help="The name of the new spec.", metavar="NAME")] = "",
     template: Annotated[
         str, typer.Option("--template", "-t", help="Which template to begin with.")
     ] = "van_der_pol",
@@ -26,6 +27,9 @@ def init(
 ) -> None:
     """Write a first spec: from a template, or from a log with its `trace:` filled in.
 
+    The templates `scenario`, `architecture`, `body`, `arbiter` and `world` bring all that they
+    name: `specc init night --template scenario` writes a robot in a world that runs as it stands.
+
     **Examples**
 
     `specc init --list`
@@ -33,9 +37,12 @@ def init(
     `specc init patrol --template wall_follow`
 
     `specc init drive --from run.mcap`
+
+    `specc init night --template scenario`
     """
     from specc.files import write_atomically
     from specc.first_spec import beginnings
+    from specc.first_spec.sets import NEXT
 
     if listing:
         print_text(beginnings.list_templates())
@@ -43,6 +50,8 @@ def init(
     name = beginnings.identifier(name or (log.stem if log else template))
     path = output or Path(f"{name}.yaml")
     companions = {} if log else beginnings.companions(template)
+    if path.name in companions:
+        raise typer.BadParameter(f"{path.name} is the name of a file that comes with it")
     for wanted in (path, *(path.parent / module for module in companions)):
         if wanted.exists():
             raise typer.BadParameter(f"{wanted} exists already; name another file with -o")
@@ -50,7 +59,9 @@ def init(
     for module, source in companions.items():
         write_atomically(path.parent / module, source.encode())
     write_atomically(path, text.encode())
-    say(f"wrote {' and '.join(map(str, (path, *companions)))}; next: specc check {path}", "bold")
+    todo = "specc check {0}" if log else NEXT.get(template, "specc check {0}")
+    written = listed(map(str, (path, *companions)), last="and")
+    say(f"wrote {written}; next: {todo.format(path)}", "bold")
 
 
 def _from_log(log: Path, name: str) -> str:

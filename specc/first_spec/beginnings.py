@@ -2,11 +2,13 @@
 
 import re
 from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from spec_schema.names import RESERVED
 from spec_schema.suggest import did_you_mean
 from specc.faults import fault
+from specc.first_spec.sets import FIRST, set_of
 
 
 def templates() -> dict[str, str]:
@@ -19,16 +21,23 @@ def templates() -> dict[str, str]:
 
 
 def companions(template: str) -> dict[str, str]:
-    """The Python modules that a template's field calls, by file name."""
+    """What a template does not stand without, by file name: Python modules, specs that it names."""
+    if template in FIRST:
+        return dict(list(set_of(template, _folder()).items())[1:])
     called = re.findall(r'call: "?(\w+):', templates().get(template, ""))
     return {name: text for name, text in _library().items() if name.removesuffix(".py") in called}
 
 
-def _library() -> dict[str, str]:
+def _folder() -> Traversable:
     folder = resources.files("specc") / "templates"
-    if not folder.is_dir():  # an editable install: the library stands at the repository's root
-        folder = Path(__file__).resolve().parents[2] / "specs"
-    entries = sorted(folder.iterdir(), key=lambda entry: entry.name)
+    if folder.is_dir():
+        return folder
+    # An editable install: the library stands at the repository's root.
+    return Path(__file__).resolve().parents[2] / "specs"
+
+
+def _library() -> dict[str, str]:
+    entries = sorted(_folder().iterdir(), key=lambda entry: entry.name)
     return {
         entry.name: entry.read_text(encoding="utf-8")
         for entry in entries
@@ -39,10 +48,15 @@ def _library() -> dict[str, str]:
 def list_templates() -> str:
     """The templates, each with what it is about."""
     rows = []
-    for name, text in templates().items():
+    for name, text in {**_firsts(), **templates()}.items():
         about = re.search(r"^about: (.*)$", text, re.MULTILINE)
         rows.append(f"{name:16} {about[1] if about else ''}")
     return "\n".join(rows)
+
+
+def _firsts() -> dict[str, str]:
+    """The first spec of each kind that is no behavior."""
+    return {kind: next(iter(set_of(kind, _folder()).values())) for kind in FIRST}
 
 
 def from_template(template: str, name: str) -> str:
@@ -51,7 +65,7 @@ def from_template(template: str, name: str) -> str:
     Raises:
         SpecError: there is no such template.
     """
-    known = templates()
+    known = _firsts() | templates()
     if template not in known:
         remedy = did_you_mean(template, list(known)) or f"there are {', '.join(known)}"
         raise fault("V343", template, f"no template is named '{template}'", remedy)

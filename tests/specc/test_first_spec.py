@@ -10,6 +10,8 @@ from compiler.check import check
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import load
+from specc.first_spec import beginnings
+from specc.first_spec.sets import FIRST
 from specc.first_spec.written import spec_for
 from specc.verifying import verify
 from verifier.traces.inventory import FieldInfo, Inventory, TopicInfo, inspect
@@ -154,3 +156,33 @@ def test_a_log_without_a_readable_message_is_told_with_what_was_lost() -> None:
 
     with pytest.raises(SpecError, match=r"(?s)V306.*no message.*torn chunk: 2 \(at byte 40\)"):
         spec_for(found, "run")
+
+
+@pytest.mark.parametrize("kind", FIRST)
+def test_the_first_spec_of_each_kind_stands_in_one_folder_and_has_no_mistakes(
+    tmp_path: Path, kind: str
+) -> None:
+    files = {"own.yaml": beginnings.from_template(kind, "own"), **beginnings.companions(kind)}
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+
+    spec = load(tmp_path / "own.yaml").spec
+    assert (spec.kind, spec.name) == (kind, "own")
+    for name in files:
+        assert check(tmp_path / name) == ()
+
+
+def test_the_first_scenario_brings_each_kind_that_it_takes(tmp_path: Path) -> None:
+    for name, text in beginnings.companions("scenario").items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+
+    kinds = {load(path).spec.kind for path in tmp_path.iterdir()}
+    assert kinds == {"architecture", "arbiter", "behavior", "body", "world"}
+
+
+def test_templates_of_every_kind_are_listed_and_one_that_is_not_there_is_guessed() -> None:
+    listed = {line.split()[0] for line in beginnings.list_templates().splitlines()}
+
+    assert set(FIRST) < listed
+    with pytest.raises(SpecError, match="scenario"):
+        beginnings.from_template("scenaro", "own")
