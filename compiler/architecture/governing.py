@@ -5,8 +5,9 @@ from itertools import combinations
 from typing import Final, final
 
 from compiler.architecture.exclusion.answer import Proof, Undecided
-from compiler.architecture.exclusion.ask import Wiring, question_of
+from compiler.architecture.exclusion.ask import question_of
 from compiler.architecture.exclusion.decide import decide
+from compiler.architecture.exclusion.wiring import Wiring
 from spec_schema.wording import listed
 
 PAIR: Final = "{pair}"

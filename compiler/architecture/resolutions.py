@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from compiler.architecture.bodies import Port
-from compiler.architecture.exclusion.ask import Wiring
+from compiler.architecture.exclusion.wiring import Wiring
 from compiler.architecture.governing import exclusion_of
 from compiler.architecture.parts import Part, Parts
 from compiler.findings import Findings
@@ -139,11 +139,7 @@ def _ways(reach: Reach, parts: Parts) -> str:
 
 def conflicts(nodes: tuple[str, ...], parts: Parts) -> list[tuple[str, str]]:
     """Pairs of nodes that no combined behavior keeps from acting at once."""
-    apart = {
-        frozenset(pair)
-        for name in nodes
-        for pair in _replaced(name, parts)
-    }
+    apart = {frozenset(pair) for name in nodes for pair in _replaced(name, parts)}
     return [
         (first, second)
         for i, first in enumerate(nodes)

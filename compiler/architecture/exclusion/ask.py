@@ -1,10 +1,10 @@
 """From the nodes of an architecture to the question whether two of them ever act at once."""
 
 import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Final, TypeAlias, final
+from dataclasses import replace
+from typing import Final, TypeAlias
 
+from compiler.architecture.exclusion.firmness import doubt_of
 from compiler.architecture.exclusion.question import (
     Actor,
     Decider,
@@ -15,12 +15,11 @@ from compiler.architecture.exclusion.question import (
     Question,
     Signal,
 )
-from runtime.arbiter import Arbiter, Paradigm, Read
-from runtime.architecture import Input, Node, Outside
-from runtime.architecture import Signal as BoardSignal
+from compiler.architecture.exclusion.wiring import WHAT, Wiring
+from runtime.arbiter import Paradigm, Read
+from runtime.architecture import Input, Outside
 from runtime.code import ONE
-from runtime.program import Constant, Control, Kind, Program, State
-from runtime.world.model import Sensor
+from runtime.program import Constant, Control, Kind, State
 
 HOW: Final = {
     Paradigm.RULES: How.FIRST,
@@ -30,25 +29,8 @@ HOW: Final = {
     Paradigm.PLAN: How.ONE,
     Paradigm.MODULE: How.ANY,
 }
-WHAT: Final = {
-    Paradigm.COMPETITION: "a competition of activations that are never quite 0",
-    Paradigm.MODULE: "a Python function",
-}
-
 Need: TypeAlias = tuple[Outcome, ...]
 Part: TypeAlias = Read | State | Control | Constant
-
-
-@final
-@dataclass(frozen=True, eq=False, slots=True)
-class Wiring:
-    """What of an architecture the question depends on: all but its channels."""
-
-    nodes: Sequence[Node]
-    board: Sequence[BoardSignal]
-    programs: Sequence[Program]
-    arbiters: Sequence[Arbiter]
-    sensors: Sequence[Sensor]
 
 
 def question_of(wiring: Wiring, first: int, second: int) -> Question:
@@ -62,11 +44,16 @@ def question_of(wiring: Wiring, first: int, second: int) -> Question:
     deciders = [_decider(wiring, place) for place in used]
     read = sorted({e.signal for one in deciders for e in one.entries if e.signal >= 0})
     signals = _signals(wiring)
+    # Both act: so has decided who alone can fulfil one of their needs.
+    given = {need[0][0] for many in needs[:2] for need in many if len({d for d, _ in need}) == 1}
+    shared = {need for many in needs[:2] for need in many}
     actors = [
         Actor(
-            wiring.nodes[place].name, tuple(tuple((used.index(d), o) for d, o in n) for n in many)
+            wiring.nodes[place].name,
+            tuple(tuple((used.index(d), o) for d, o in n) for n in many),
+            doubt_of(wiring, tuple(n for n in many if n not in shared), given) if i > 1 else "",
         )
-        for place, many in zip(who, needs, strict=True)
+        for i, (place, many) in enumerate(zip(who, needs, strict=True))
     ]
     return Question(
         signals=tuple(signals[place] for place in read),

@@ -178,9 +178,10 @@ def variable_of(question: Question, entry: Entry) -> Variable:
     """What an entry's signal, or own value, may be."""
     if entry.signal >= 0:
         signal = question.signals[entry.signal]
-        options = tuple(map(float, range(round(signal.low), round(signal.high) + 1)))
-        is_discrete = bool(signal.values)
-        return Variable(signal.low, signal.high, options if is_discrete else (), signal.unit.scale)
+        options: tuple[float, ...] = ()
+        if signal.values:
+            options = tuple(map(float, range(round(signal.low), round(signal.high) + 1)))
+        return Variable(signal.low, signal.high, options, signal.unit.scale)
     values = tuple(sorted(set(entry.values))) or tuple(map(float, range(len(entry.labels))))
     if values:
         return Variable(values[0], values[-1], values, entry.unit.scale)

@@ -39,8 +39,24 @@ def decide(question: Question) -> Answer:
 
 
 def _decided(question: Question) -> Answer:
+    """The answer; nothing is proved by a combined behavior that may not act when it should."""
     ways = list(_ways(question))
-    return _searched(question, ways) if ways else Proof(_structure(question))
+    if not ways:
+        return Proof(_structure(question))
+    answer = _searched(question, ways)
+    doubtful = [actor for actor in question.unless if actor.doubt]
+    if not isinstance(answer, Proof) or not doubtful:
+        return answer
+    firm = tuple(actor for actor in question.unless if not actor.doubt)
+    alone = _searched(replace(question, unless=firm), ways)
+    if isinstance(alone, Proof):
+        return alone
+    names = listed([actor.name for actor in doubtful])
+    return Undecided(
+        f"only {names} would act in their place, and may not act then: {doubtful[0].doubt}",
+        "let all that a combined behavior reads and gives be finite over all domains, such as "
+        "sqrt(max(x, 0)), or let one arbiter of `rules` choose",
+    )
 
 
 def _mend(question: Question) -> str:

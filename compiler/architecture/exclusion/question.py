@@ -110,10 +110,14 @@ Outcome: TypeAlias = tuple[int, int]
 @final
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """A node that may act: where of each of its `needs` at least one outcome holds."""
+    """A node that may act: where of each of its `needs` at least one outcome holds.
+
+    doubt: of a combined behavior, why it may not act even there; empty where it surely does.
+    """
 
     name: str
     needs: tuple[tuple[Outcome, ...], ...]
+    doubt: str = ""
 
 
 @final

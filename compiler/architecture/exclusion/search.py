@@ -261,8 +261,9 @@ class _Search:
             whole = 0.5 * self._variables[name].high - 0.5 * self._variables[name].low
             return (0.5 * high - 0.5 * low) / whole if whole > 0.0 else 0.0
 
-        name = max(names, key=width, default=None)
-        if name is None or box[name][0] == box[name][1]:
+        # Widths of the smallest doubles are rounded to 0: what is no point is halved all the same.
+        name = max((n for n in names if box[n][0] < box[n][1]), key=width, default=None)
+        if name is None:
             return []
         return [{**box, name: part} for part in self._split(name, *box[name])]
 

@@ -7,8 +7,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 from compiler.architecture.exclusion.answer import Witness
-from compiler.architecture.exclusion.ask import Wiring, question_of
+from compiler.architecture.exclusion.ask import question_of
 from compiler.architecture.exclusion.question import Question
+from compiler.architecture.exclusion.wiring import Wiring
 from runtime.arbiter import Arbiter, Paradigm, Read, Rule
 from runtime.architecture import Architecture, Outside
 from runtime.code import Code
