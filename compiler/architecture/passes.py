@@ -74,7 +74,7 @@ def compile_parts(
         wiring = Wiring(lowered.nodes, signals, lowered.programs, lowered.arbiters, sensors)
     channels = channels_of(commands, parts, wiring, findings)
     order = order_of(inputs, signals, parts, findings)
-    check_timing(inputs, choices, parts, findings)
+    check_timing(inputs, signals, choices, parts, findings)
     if lowered is None or parts.body is None or findings.has_errors:
         return None
     check_standing(inputs, commands, signals, parts, findings)
