@@ -43,7 +43,7 @@ def where_is(text: str, beside: Path) -> str:
     """The file that `load_callee` would run, or which installed package, in words."""
     module_name = text.partition(":")[0]
     path = _file_of(module_name, beside)
-    return str(path) if path.is_file() else f"no file of {beside}, but an installed package"
+    return str(path) if path.is_file() else f"there is no {path}, so an installed package"
 
 
 def call(text: str, callee: Callee, *arguments: object) -> object:

@@ -1,6 +1,7 @@
 """Files: which are specs, and how one is written whole or not at all."""
 
 import json
+import secrets
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -20,10 +21,12 @@ def write_atomically(path: Path, data: bytes) -> None:
     target = Path(path).resolve()
     if target.exists() and not target.is_file():
         raise fault("V347", path, "this is no ordinary file, so nothing is written to it")
-    beside = target.with_name(f".{target.name}.part")
+    # A name of its own: two processes that write one file do not write into one another's.
+    beside = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        beside.write_bytes(data)
+        with beside.open("xb") as file:
+            file.write(data)
         beside.replace(target)
     except OSError as error:
         why = str(error.strerror).lower()

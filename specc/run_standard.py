@@ -1,5 +1,6 @@
 """By what the recording of a scenario is judged: what it carries, or a spec that is named."""
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from spec_schema.suggest import did_you_mean
 from specc.faults import fault
 from specc.loading import kind_of, load_architecture, load_scenario
 from verifier.architectures.document import SUFFIX, ScenarioDocument, attached_scenario
+from verifier.report.places import place_of
 from verifier.report.report import SpecIdentity
 from verifier.traces.files.open_log import attached_programs, attachments, damaged_attachments
 
@@ -42,7 +44,9 @@ class Standard:
     """What the nodes of each robot, and the whole run, are held against.
 
     only: names of the nodes that are judged, `robot.node`; None for all. spec: of the scenario
-    that requires something. how: where all that comes from, as a phrase.
+    that requires something. how: where all that comes from, as a phrase. beside: the folder in
+    which code of the user's own is looked for: that of the recording, or of the spec that is named;
+    None: that of each architecture's file, where the spec that is named was compiled from those.
     """
 
     robots: tuple[Robot, ...]
@@ -50,6 +54,16 @@ class Standard:
     only: frozenset[str] | None
     spec: SpecIdentity
     how: str
+    beside: Path | None
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _Named:
+    """Where a spec comes from, and the folder of its code; see `Standard`."""
+
+    how: str
+    beside: Path | None
 
 
 def carries_architectures(trace: Path) -> bool:
@@ -135,23 +149,39 @@ def standard_of(
     """
     document = carried.document
     name = trace.stem if document is None else document.name
-    own = SpecIdentity(name, f"{name}.scenario.json, attached to the trace", "")
+    own = _own(trace, name, document)
     if spec is None:
         requirements = () if document is None else document.requirements
-        return Standard(carried.robots, requirements, None, own, "attached to the trace")
+        return Standard(
+            carried.robots, requirements, None, own, "attached to the trace", trace.parent
+        )
     if isinstance(spec, Program):
-        return _by_node(trace, carried, spec, f"{spec.name}, as given", own)
-    how = f"{spec}, as named by --spec"
+        given = f"{spec.name}, as given"
+        return _by_node(trace, carried, spec, _Named(given, trace.parent), own)
+    is_compiled = spec.suffix == ".specc"
+    named = _Named(f"{spec}, as named by --spec", spec.parent if is_compiled else None)
     match kind_of(spec):
         case "scenario":
-            return _by_scenario(trace, carried, spec, how)
+            return _by_scenario(trace, carried, spec, named)
         case "architecture":
-            return _by_architecture(trace, carried, spec, how, own)
+            return _by_architecture(trace, carried, spec, named, own)
         case _:
-            return _by_node(trace, carried, program_of(spec), how, own)
+            return _by_node(
+                trace, carried, program_of(spec), replace(named, beside=spec.parent), own
+            )
 
 
-def _by_scenario(trace: Path, carried: Carried, spec: Path, how: str) -> Standard:
+def _own(trace: Path, name: str, document: ScenarioDocument | None) -> SpecIdentity:
+    """The scenario that a recording carries: the file it was written in, the hash of what it is."""
+    data = next((data for _, data in attachments(trace, SUFFIX)), b"")
+    places = [place_of(each.origin) for each in document.requirements] if document else []
+    file = next((place.file for place in places if place is not None), name)
+    return SpecIdentity(
+        name, f"{file}, attached to the recording", hashlib.sha256(data).hexdigest()
+    )
+
+
+def _by_scenario(trace: Path, carried: Carried, spec: Path, named: _Named) -> Standard:
     scenario = load_scenario(spec).scenario
     recorded = {robot.name for robot in carried.robots}
     missing = [robot.name for robot in scenario.robots if robot.name not in recorded]
@@ -159,11 +189,11 @@ def _by_scenario(trace: Path, carried: Carried, spec: Path, how: str) -> Standar
         raise _about_others(trace, f"{spec} is about robot '{missing[0]}'", "robots", recorded)
     source = scenario.source
     identity = SpecIdentity(scenario.name, source.file, source.sha256)
-    return Standard(scenario.robots, scenario.requirements, None, identity, how)
+    return Standard(scenario.robots, scenario.requirements, None, identity, named.how, named.beside)
 
 
 def _by_architecture(
-    trace: Path, carried: Carried, spec: Path, how: str, own: SpecIdentity
+    trace: Path, carried: Carried, spec: Path, named: _Named, own: SpecIdentity
 ) -> Standard:
     """Every robot of an architecture of that name; where there is one robot, that one."""
     architecture, body = load_architecture(spec)
@@ -175,11 +205,11 @@ def _by_architecture(
         message = f"{spec} is architecture '{architecture.name}'"
         raise _about_others(trace, message, "architectures", names)
     robots = tuple(_robot(robot.name, architecture, body) for robot in meant)
-    return Standard(robots, (), None, own, how)
+    return Standard(robots, (), None, own, named.how, named.beside)
 
 
 def _by_node(
-    trace: Path, carried: Carried, spec: Program | Arbiter, how: str, own: SpecIdentity
+    trace: Path, carried: Carried, spec: Program | Arbiter, named: _Named, own: SpecIdentity
 ) -> Standard:
     """The nodes of a behavior or arbiter of that name, and no others."""
     found = [(robot, _with(robot.architecture, spec)) for robot in carried.robots]
@@ -196,7 +226,7 @@ def _by_node(
         kind = "arbiter" if isinstance(spec, Arbiter) else "behavior"
         raise _about_others(trace, f"the spec is {kind} '{spec.name}'", "specs", names)
     robots = tuple(replace(robot, architecture=changed) for robot, changed in found)
-    return Standard(robots, (), only, own, how)
+    return Standard(robots, (), only, own, named.how, named.beside)
 
 
 def _with(architecture: Architecture, spec: Program | Arbiter) -> Architecture:

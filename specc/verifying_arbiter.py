@@ -5,7 +5,7 @@ from pathlib import Path
 from compiler.architecture.arbiters import compile_arbiter
 from runtime.arbiter import Arbiter, Paradigm
 from runtime.arbitration.build import arbiter_of
-from runtime.user_code import UserCodeError, load_callee
+from runtime.user_code import UserCodeError, load_callee, where_is
 from specc.faults import fault
 from verifier.arbitration.judging import judge_arbiter
 from verifier.arbitration.numbers import Decide, Running
@@ -26,7 +26,8 @@ def arbiter_for_verify(path: Path, *, allow_code: bool = False) -> Arbiter:
     arbiter = compile_arbiter(path).arbiter
     if arbiter.paradigm is Paradigm.MODULE and not allow_code:
         message = "this arbiter decides by Python code, which verify runs only where it is allowed"
-        raise fault("V336", path, message, "read that code, then verify with --allow-code")
+        code = f"{arbiter.module} ({where_is(arbiter.module, path.parent)})"
+        raise fault("V336", path, message, f"read {code}, then verify with --allow-code")
     return arbiter
 
 

@@ -8,7 +8,7 @@ from typing import final
 from runtime.arbiter import Arbiter, Paradigm
 from runtime.architecture import Architecture
 from runtime.program import Program
-from runtime.user_code import UserCodeError
+from runtime.user_code import UserCodeError, where_is
 from spec_schema.diagnostics import SpecError
 from specc.verifying_arbiter import running
 from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
@@ -44,10 +44,13 @@ class NotJudged:
 class How:
     """How nodes are judged.
 
-    seed: of the run, which the chance of its arbiters follows from. only: their names; None for
-    all. allow_code: whether arbiters that are code of the user's own may be run.
+    beside: the folder in which code of the user's own is looked for; None: that of the file of each
+    architecture, for one that was compiled just now. seed: of the run, which the chance of its
+    arbiters follows from. only: their names; None for all. allow_code: whether arbiters that are
+    code of the user's own may be run.
     """
 
+    beside: Path | None
     seed: int = 0
     only: Collection[str] | None = None
     allow_code: bool = False
@@ -87,11 +90,10 @@ def _examined(
             made = examine_behavior(program, record, source, only_verdict=how.only_verdict)
             return NodeVerdict(record.name, made.program, made.examination, made.judgement)
         arbiter = architecture.arbiters[node.arbiter]
+        # What a recording or an artifact says of its source is somebody's word, and no folder.
+        beside = Path(architecture.source.file).parent if how.beside is None else how.beside
         if arbiter.paradigm is Paradigm.MODULE and not how.allow_code:
-            return NotJudged(
-                named, f"{arbiter.module} is code, which verify runs only with --allow-code"
-            )
-        beside = Path(architecture.source.file).parent
+            return NotJudged(named, _not_allowed(arbiter, beside))
         decides = running(arbiter, record.name, node.period, seed=how.seed, beside=beside)
         found = examine_decisions(arbiter, record, source, decides, only_verdict=how.only_verdict)
         return NodeVerdict(record.name, arbiter, found, None)
@@ -99,3 +101,8 @@ def _examined(
         return NotJudged(named, error.diagnostics[0].message)
     except UserCodeError as error:
         return NotJudged(named, str(error))
+
+
+def _not_allowed(arbiter: Arbiter, beside: Path) -> str:
+    place = where_is(arbiter.module, beside)
+    return f"{arbiter.module} is code ({place}), which verify runs only with --allow-code"

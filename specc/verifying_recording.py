@@ -130,7 +130,7 @@ def verify_carried(
         refuse_losses(trace, log.losses)
     tell("judging")
     required = _required(trace, carried, standard, log)
-    how = How(_seed(carried), standard.only, allow_code, only_verdict)
+    how = How(standard.beside, _seed(carried), standard.only, allow_code, only_verdict)
     records = records_of(log, {robot.name: robot.architecture for robot in standard.robots})
     records |= {
         robot.name: with_motion(log, robot, with_own_doing(log, robot, records[robot.name]))

@@ -224,3 +224,36 @@ def test_nodes_that_are_code_are_none_the_safer_in_an_artifact(
 def test_code_that_is_meant_runs(command: str, mark: Path) -> None:
     assert main(command.split()) in {0, 4}
     assert mark.exists()
+
+
+def test_verify_looks_for_code_beside_the_recording_and_in_no_folder_that_it_names(
+    mark: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    away = tmp_path / "run.mcap"
+    away.write_bytes((mark.parent / "run.mcap").read_bytes())
+    verify = ["verify", str(away), "--quick", "--allow-code"]
+
+    assert main(verify) in {0, 1, 4}
+    assert "sly can't be imported" in "".join(capsys.readouterr())
+    assert not mark.exists()
+
+    (tmp_path / "sly.py").write_text(CODE, encoding="utf-8")
+    assert main(verify[:-1]) in {0, 1, 4}
+    told = "".join("".join(capsys.readouterr()).split())
+    assert "".join(f"sly:choose is code ({tmp_path / 'sly.py'})".split()) in told
+    assert not (tmp_path / "mark").exists()
+
+    assert main(verify) in {0, 1, 4}
+    assert (tmp_path / "mark").exists()
+    assert not mark.exists()
+
+
+def test_verify_takes_code_beside_an_artifact_that_is_named(mark: Path, tmp_path: Path) -> None:
+    artifact = tmp_path / "run.specc"
+    artifact.write_bytes((mark.parent / "run.specc").read_bytes())
+    verify = ["verify", "run.mcap", "--quick", "--allow-code", "--spec"]
+
+    assert main([*verify, str(artifact)]) in {0, 1, 4}
+    assert not mark.exists()
+    assert main([*verify, "run.specc"]) in {0, 1, 4}
+    assert mark.exists()

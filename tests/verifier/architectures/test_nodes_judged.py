@@ -184,7 +184,7 @@ def test_in_a_blend_who_has_nearly_all_of_the_weight_has_its_way(tmp_path: Path)
 def test_every_node_is_judged_by_its_own_spec(recorded: Recorded) -> None:
     whole, records = recorded
 
-    found = examine_nodes(whole, records, "run", How(only_verdict=True))
+    found = examine_nodes(whole, records, "run", How(None, only_verdict=True))
 
     assert [each.name for each in found if isinstance(each, NodeVerdict)] == [
         "home",
