@@ -38,12 +38,14 @@ class Verification:
 
     judgement: what the verdict rests on, without what was read and predicted; of an arbiter None.
     part: which part of a scenario's recording it is about: `robot.node`, or `requirements`.
+    remarks: what has to be known of how a part was judged.
     """
 
     found: Found[Judged]
     examination: Examination
     judgement: Judgement | None
     part: str = ""
+    remarks: tuple[str, ...] = ()
 
     @property
     def report(self) -> Report:

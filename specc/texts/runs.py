@@ -53,6 +53,7 @@ def runs_table(runs: Runs) -> str:
             *_scenarios(runs),
             _plain(runs),
             section("why", [wrapped(reason) for reason in reasons_of(runs)]),
+            section("note", [bullets(remarks_of(runs))]),
             section("next", [bullets(_advice(runs))]),
             *(section(title, blocks) for title, blocks in _together(runs)),
             last,
@@ -90,6 +91,14 @@ def _lines(row: RequirementRow) -> list[tuple[str, ...]]:
     """One line for each recording that is told of it."""
     first, *others = row.told
     return [(row.text, row.count, first), *(("", "", each) for each in others)]
+
+
+def remarks_of(runs: Runs) -> tuple[str, ...]:
+    """What has to be known of how nodes were judged, once for all recordings alike."""
+    told = [
+        f"{each.part}: {remark}" for each in verifications(runs.outcomes) for remark in each.remarks
+    ]
+    return tuple(dict.fromkeys(told))
 
 
 def _advice(runs: Runs) -> tuple[str, ...]:

@@ -285,7 +285,7 @@ def test_several_recordings_of_a_scenario_have_one_row_for_each_requirement_and_
             if result.text == text
         }
         worst = min(results, key=lambda source: results[source].robustness)
-        assert f"{worst}: {results[worst].sentence}" in row
+        assert f"{worst}: {results[worst].detail}" in " ".join(" ".join(lines).split())
     nodes = [line.split()[0] for line in lines if line.startswith("r.") and "  " in line]
     assert [name for name in nodes if name in {"r.avoid", "r.seek", "r.choose"}] == [
         "r.avoid",

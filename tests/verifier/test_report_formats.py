@@ -25,7 +25,7 @@ from verifier.report.examination_text import examination_text
 from verifier.report.findings import Finding, Level, Rule, findings_of
 from verifier.report.junit import as_junit
 from verifier.report.places import place_of
-from verifier.report.report import Verdict
+from verifier.report.report import Standing, Verdict
 from verifier.report.sarif import as_sarif
 
 HOSTILE = "\x00\x1b[31m]]><x a='1'>&\"\ud800\uffff%0A::error::\r\nend"
@@ -75,7 +75,7 @@ def test_an_inconclusive_verdict_says_why_once() -> None:
 # --- JUnit
 
 
-TESTSUITE = {"name", "tests", "failures", "errors", "time", "timestamp", "id", "package"}
+TESTSUITE = {"name", "tests", "failures", "errors", "skipped", "timestamp", "id", "package"}
 TESTCASE = {"name", "classname", "time", "file", "line", "assertions", "status"}
 
 
@@ -99,8 +99,8 @@ def assert_valid(root: ET.Element) -> None:
             assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d", suite.attrib["timestamp"])
         for case in suite.iter("testcase"):
             assert {"name", "classname"} <= case.attrib.keys() <= TESTCASE
-            assert {child.tag for child in case} <= {"failure", "error"}
-            assert all({"message", "type"} == child.attrib.keys() for child in case)
+            assert {child.tag for child in case} <= {"failure", "error", "skipped"}
+            assert all("message" in child.attrib.keys() <= {"message", "type"} for child in case)
     for name in ("tests", "failures", "errors"):
         assert int(root.attrib[name]) == sum(int(suite.attrib[name]) for suite in root)
 
@@ -110,14 +110,22 @@ def test_junit_is_valid_and_red_unless_the_verdict_is_pass(verdict: Verdict) -> 
     root = junit(examination(verdict), passed())
 
     assert_valid(root)
-    overall = root[0].find("testcase")
-    assert overall is not None
-    assert [child.tag for child in overall] == {
-        Verdict.PASS: [],
-        Verdict.FAIL: ["failure"],
-        Verdict.INCONCLUSIVE: ["error"],
-    }[verdict]
+    found = {child.tag for case in root[0].iter("testcase") for child in case}
+    red = {Verdict.PASS: set(), Verdict.FAIL: {"failure"}, Verdict.INCONCLUSIVE: {"error"}}
+    assert found & {"failure", "error"} >= red[verdict]
     assert not list(root[1].iter("failure")) + list(root[1].iter("error"))
+
+
+def test_junit_counts_one_failure_for_each_variable_that_fails() -> None:
+    made = examination(Verdict.FAIL)
+    failing = [v for v in made.report.variables if v.standing is Standing.EXCEEDED]
+    ways = made.switching.ways if made.switching else ()
+    failing_ways = [way for way in ways if way.standing is Standing.EXCEEDED]
+    assert failing
+
+    suite = junit(made)[0]
+
+    assert int(suite.attrib["failures"]) == len(failing) + len(failing_ways)
 
 
 def test_junit_has_a_case_for_each_variable_and_requirement() -> None:

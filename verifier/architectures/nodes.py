@@ -25,6 +25,7 @@ from verifier.architectures.telling import (
     INHIBITED,
     OVERRULED,
     told_of_node,
+    with_touches,
     without_logs,
 )
 from verifier.examination import explain
@@ -48,7 +49,8 @@ class NodeRecord:
     a behavior states and controls, of an arbiter reads and controls. held_back: by cause, (T,)
     from which ticks on what the robot does is not, or not fully, its doing. chosen: (T,) of an
     arbiter, -1 where it chose nothing. losses: of the recording. unmeasured: states of a behavior
-    that nothing in the recording measures: they are its own reckoning.
+    that nothing in the recording measures: they are its own reckoning. touches: (T,) whether the
+    body touches something; None where that is not known.
     """
 
     name: str
@@ -58,6 +60,7 @@ class NodeRecord:
     chosen: Array | None = None
     losses: tuple[Loss, ...] = ()
     unmeasured: tuple[str, ...] = ()
+    touches: Booleans | None = None
 
     @property
     def free(self) -> Booleans:
@@ -130,9 +133,10 @@ def examine_behavior(
     """
     judged, trace = _as_log(_of_measured(program, record), record, source)
     judgement = judgement_of(judged, trace)
-    judgement = replace(
-        judgement, report=told_of_node(judgement.report, record.times, record.held_back)
-    )
+    told = told_of_node(judgement.report, record.times, record.held_back)
+    if record.touches is not None:
+        told = with_touches(told, record.times, record.free, record.touches)
+    judgement = replace(judgement, report=told)
     notes = (*(f"{name} {UNMEASURED}" for name in record.unmeasured), *judgement.report.notes)
     judgement = replace(judgement, report=replace(judgement.report, notes=notes))
     made = explain(judged, trace, judgement, _in_silence, only_verdict=only_verdict)

@@ -14,7 +14,7 @@ import numpy as np
 from runtime.architecture import Architecture, Node
 from runtime.arrays import Array, Booleans
 from runtime.program import Kind
-from runtime.recording.nodes import CHANNELS, READINGS, topic_of
+from runtime.recording.nodes import CHANNELS, CLOSE, READINGS, topic_of
 from runtime.recording.tables import Field
 from runtime.scenario import Robot
 from runtime.world.model import Body, Sensor, SensorKind
@@ -24,12 +24,14 @@ from verifier.architectures.nodes import NodeRecord
 HANDED_OVER: Final = "the body still did what it was told before"
 UNSEEN: Final = "was not seen (the last reading stands)"
 SEEN: Final = "seen"
+CONTACTS: Final = (Field("contacts"),)
 
 
 def topics_of_doing(robot: Robot) -> dict[str, list[Field]]:
     """What is read of a recording for that, by topic."""
     channels = [Field(each.name, each.unit) for each in robot.architecture.channels]
     found = {f"/{robot.name}/{CHANNELS}": channels} if channels else {}
+    found[f"/{robot.name}/{CLOSE}"] = list(CONTACTS)
     for sensor in robot.body.sensors:
         if sensor.kind is SensorKind.SIGHT:
             found[topic_of(robot.name, sensor.name, READINGS)] = _readings(sensor)
@@ -52,7 +54,17 @@ def _marked(log: RunLog, robot: Robot, node: Node, record: NodeRecord) -> NodeRe
     for cause, flags in _found(log, robot, node, record):
         back[cause] = back.get(cause, False) | (flags & ~taken)
         taken = taken | flags
-    return replace(record, held_back=back)
+    return replace(record, held_back=back, touches=_touches(log, robot, record.times))
+
+
+def _touches(log: RunLog, robot: Robot, at: Array) -> Booleans | None:
+    """Whether the body touches something at these times; None where that was not recorded."""
+    times, columns = log.columns(f"/{robot.name}/{CLOSE}", CONTACTS)
+    if not times.size:
+        return None
+    last = np.maximum(np.searchsorted(times, at, "right") - 1, 0)
+    found: Booleans = columns["contacts"][last] > 0.0
+    return found
 
 
 def _found(

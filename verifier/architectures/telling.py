@@ -5,15 +5,17 @@ is left out, and so is `specc fit`, which edits by logs.
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from runtime.arrays import Array, Booleans
+from runtime.program import Program
 from verifier.report.examination import Examination
 from verifier.report.report import Exclusion, Report, Verdict
-from verifier.report.wording import listed, number, seconds
+from verifier.report.wording import listed, number, quantity, seconds, span
 
 INHIBITED: Final = "it was inhibited"
 OVERRULED: Final = "it was overruled"
@@ -26,6 +28,10 @@ OF_LOGS: Final = re.compile(
 FITTING: Final = re.compile(r" \(`specc fit [^`]*` edits it\)")
 
 MENDING: Final = "mend the robot"
+MUCH: Final = 0.05
+"""Touching for less of its time explains little."""
+SAME: Final = 1e-6
+"""Values that differ by this share are one."""
 
 
 def told_of_node(report: Report, times: Array, held_back: dict[str, Booleans]) -> Report:
@@ -36,6 +42,40 @@ def told_of_node(report: Report, times: Array, held_back: dict[str, Booleans]) -
     if report.starts.size:
         return replace(report, advice=(*report.advice, *_of_run(report)))
     return replace(report, reasons=(_never(report, causes),), advice=_advice(causes))
+
+
+def with_touches(report: Report, times: Array, free: Booleans, touches: Booleans) -> Report:
+    """The report, its first reason told with how long the body touched something meanwhile.
+
+    A field says what happens between robot and world: being held by a wall is a departure, too,
+    and is not left out; but whoever reads of a departure wants to know.
+    """
+    if report.verdict is Verdict.PASS or times.size < 2 or not report.reasons:
+        return report
+    lasts = np.append(np.diff(times), 0.0)
+    own, touched = float(lasts[free].sum()), float(lasts[free & touches].sum())
+    if touched < MUCH * own or touched == 0.0:
+        return report
+    said = (
+        f"{report.reasons[0]}; in {seconds(touched)} of the {seconds(own)} in which it had its way"
+        " its body touched something, which may have held it"
+    )
+    return replace(report, reasons=(said, *report.reasons[1:]))
+
+
+def controls_as_recorded(program: Program, columns: Mapping[str, Array]) -> tuple[str, ...]:
+    """Of each control that was not at the default of the spec: what it was, which counts."""
+    told = []
+    for each in program.controls:
+        values = columns.get(each.name, np.zeros(0))
+        low, high = (values.min(), values.max()) if values.size else (each.default, each.default)
+        near = SAME * max(abs(each.default), abs(low), abs(high))
+        if max(abs(low - each.default), abs(high - each.default)) > near:
+            is_one = high - low <= near
+            was = quantity(low, each.unit) if is_one else span(low, high, each.unit)
+            default = quantity(each.default, each.unit)
+            told.append(f"{each.name} is {was}, as recorded; the spec's default is {default}")
+    return tuple(told)
 
 
 def without_logs(examination: Examination) -> Examination:

@@ -50,7 +50,9 @@ def wide_table(rows: Sequence[Sequence[str]]) -> str:
 
 def _lines_of(row: Sequence[str], width: int) -> list[tuple[str, ...]]:
     """A row, and under it the further lines of its last cell."""
-    first, *more = textwrap.wrap(row[-1], width, break_on_hyphens=False) or [""]
+    first, *more = textwrap.wrap(
+        row[-1], width, break_on_hyphens=False, break_long_words=False
+    ) or [""]
     blank = [""] * (len(row) - 1)
     return [(*row[:-1], first), *((*blank, f"  {line}") for line in more)]
 

@@ -17,6 +17,8 @@ OVERALL: Final = {
     Verdict.INCONCLUSIVE: Standing.UNDECIDED,
 }
 
+WHOLE: Final = "does what the spec says"
+"""The name of the verdict as a whole."""
 OUTCOMES: Final = {
     Outcome.SATISFIED: Standing.WITHIN,
     Outcome.VIOLATED: Standing.EXCEEDED,
@@ -36,16 +38,17 @@ class Requirement:
 
 
 def requirements_of(examination: Examination) -> tuple[Requirement, ...]:
-    """The verdict as a whole, then each variable, the region, each change of mode; or of a run."""
+    """What a run requires; or the verdict as a whole, variables, the region, changes of mode."""
     report = examination.report
     fidelity = examination.origins.get("fidelity", "")
     reasons = "\n".join(report.reasons)
+    if examination.requirements:  # each of them is one, and nothing else is
+        return tuple(_of_run(examination.requirements))
     return (
-        Requirement("does what the spec says", OVERALL[report.verdict], reasons, fidelity),
+        Requirement(WHOLE, OVERALL[report.verdict], reasons, fidelity),
         *_variables(report),
         *_region(report.coverage, fidelity),
         *_ways(examination.switching),
-        *_of_run(examination.requirements),
     )
 
 

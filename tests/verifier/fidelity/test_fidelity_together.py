@@ -14,8 +14,8 @@ from verifier.fidelity.judging.structure import MOST, shown_structure
 from verifier.fidelity.switching.together import with_every_switching
 from verifier.fidelity.together import verify_together
 from verifier.fidelity.verify import verify
-from verifier.report.report import Report, Standing, Verdict
-from verifier.report.switching import Switching, Way
+from verifier.report.report import Interval, Report, Standing, Verdict
+from verifier.report.switching import Sample, Switching, Timing, Way
 from verifier.traces.trace import Loss, Trace
 
 SETS = 100
@@ -259,6 +259,33 @@ def test_changes_of_mode_make_a_common_verdict_only_worse(
     assert found.verdict is verdict
     if verdict is not Verdict.PASS:
         assert any(reason.endswith(".mcap: that is why") for reason in found.reasons)
+
+
+def timed(count: int, late: float, allowed: float) -> Switching:
+    """A way that was taken so many times, each so much too late (s)."""
+    sample = Sample((late,) * count, (0.01,) * count, 0.0)
+    few = Interval(-np.inf, np.inf)
+    timing = Timing(count, late, few, allowed, "", 0.05, Standing.UNDECIDED, sample)
+    way = Way("go", "rest", count, 0, 0, 0, timing, (), Standing.UNDECIDED, "spec.yaml:1:1")
+    return Switching("mode", (way,), (), Standing.UNDECIDED, ("too few",), ())
+
+
+@pytest.mark.parametrize(
+    ("switchings", "verdict"),
+    [
+        ([timed(1, 0.01, 0.1)] * 4, Verdict.PASS),
+        ([timed(1, 0.01, 0.1)] * 2, Verdict.INCONCLUSIVE),
+        ([timed(2, 0.01, 0.1), timed(2, 0.02, 0.2)], Verdict.PASS),
+        ([timed(2, 0.3, 0.1)] * 3, Verdict.FAIL),
+    ],
+)
+def test_switches_of_several_recordings_decide_together_what_few_do_not(
+    scenes: ModuleType, switchings: list[Switching], verdict: Verdict
+) -> None:
+    report = verify(scenes.van_der_pol(), scenes.van_der_pol_drive(1, 60.0, 0.01))
+    named = [(f"{k}.mcap", each) for k, each in enumerate(switchings)]
+
+    assert with_every_switching(report, named).verdict is verdict
 
 
 @pytest.mark.slow

@@ -165,8 +165,15 @@ def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
         horizon = results[0].declared.horizon
         return [too_few(horizon)]
     factors = {result.name: _more(result) for result in results}
-    hopeless = [name for name, factor in factors.items() if factor > HOPELESS]
+    many = [result for result in results if factors[result.name] > HOPELESS]
+    hopeless = [result.name for result in many if _is_near(result)]
+    short = [result.name for result in many if not _is_near(result)]
     told = []
+    if short:
+        told.append(
+            f"{seconds(judged)} of judged data tell too little about {listed(short)}: record many"
+            " times as much"
+        )
     if hopeless:
         verb, whose = ("departs", "its") if len(hopeless) == 1 else ("depart", "their")
         told.append(
@@ -181,6 +188,11 @@ def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
             f" decide about {listed(others)}, if departures stay what they are"
         )
     return told
+
+
+def _is_near(result: VariableResult) -> bool:
+    """Whether it departs by about what is allowed."""
+    return 0.5 <= result.declared.departure / _allowed(result) <= 2.0
 
 
 def too_few(horizon: float) -> str:
