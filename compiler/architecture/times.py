@@ -11,6 +11,12 @@ from spec_schema.places import Path
 
 LEAST_STEP: Final = Fraction(1, 10_000)
 """Seconds: below this a step of the world costs more than it tells."""
+SHORT_STEP: Final = Fraction(1, 2000)
+"""Seconds: a shorter step is hardly ever meant, and a run takes ten times as many as usual."""
+USUAL_STEP: Final = Fraction(1, 240)
+"""Seconds: the longest step of a scenario that does not say another."""
+ROUND: Final = tuple(Fraction(n, 1000) for n in (1, 5, 10))
+"""Multiples of these are proposed."""
 FINEST: Final = 10**7
 """Times are read as fractions of a second with at most this denominator."""
 
@@ -69,3 +75,45 @@ def check_common_step(parts: Parts, findings: Findings) -> None:
             findings.error("S352", path, message, remedy)
             return
         shared = with_it
+    if 0 < shared < SHORT_STEP:
+        times = {exact(time): path for path, time in reversed(_times_of(parts)) if time > 0.0}
+        message, remedy = short_step(times)
+        findings.warning("S355", times[_forcing(times)[0]], message, remedy)
+
+
+def step_of(shared: Fraction, longest: Fraction) -> Fraction:
+    """The longest step up to `longest` that divides `shared`, where that is above 0."""
+    return shared / math.ceil(shared / longest)
+
+
+def short_step(times: Iterable[Fraction]) -> tuple[str, str]:
+    """What is told of times whose common step is short, and what to write instead."""
+    known = sorted(set(times), reverse=True)
+    step, forcing = common(known), _forcing(known)
+    rest = common(time for time in known if time not in forcing)
+    written = " and ".join(seconds(float(time)) for time in forcing)
+    message = (
+        f"{written} and the other times have no longer step in common than "
+        f"{seconds(float(step))}, so a run takes {round(USUAL_STEP / step)} times the usual steps"
+    )
+    return message, "; ".join(_nearby(time, rest) for time in forcing)
+
+
+def _forcing(times: Iterable[Fraction]) -> list[Fraction]:
+    """Those without any one of which the step would not be short, or else those that are odd."""
+    known = list(dict.fromkeys(times))
+    alone = [time for time in known if not 0 < common(o for o in known if o != time) < SHORT_STEP]
+    odd = [time for time in known if time % SHORT_STEP]
+    return alone or odd or known
+
+
+def _nearby(time: Fraction, rest: Fraction) -> str:
+    """The nearest round time that does with the rest, and one that allows a longer step."""
+    found: list[tuple[Fraction, Fraction]] = []
+    for unit in ROUND:
+        near = max(round(time / unit), 1) * unit
+        step = step_of(common((rest, near)), USUAL_STEP)
+        if step >= SHORT_STEP and all(step > known for _, known in found):
+            found.append((near, step))
+    told = " or ".join(f"{seconds(float(t))} (a step of {seconds(float(s))})" for t, s in found)
+    return f"write {told or 'a multiple of the others'} instead of {seconds(float(time))}"

@@ -1,13 +1,20 @@
 """Scenarios: robots in a world, the step of time, and what is required of the run."""
 
-import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import final
 
 from compiler.architecture.library import Library
 from compiler.architecture.passes import CompiledArchitecture, compile_parts
-from compiler.architecture.timing import LEAST_STEP, common, exact, seconds
+from compiler.architecture.times import (
+    LEAST_STEP,
+    SHORT_STEP,
+    common,
+    exact,
+    seconds,
+    short_step,
+    step_of,
+)
 from compiler.findings import Findings
 from compiler.lower_parts import origin_of
 from compiler.requirement import lower_requirement
@@ -16,6 +23,7 @@ from compiler.world.quantities_of_run import quantities_of
 from compiler.world.shapes import pose_of, positive
 from compiler.world.size import check_heights_with, is_small_enough
 from compiler.world.starts import beginnings_of
+from compiler.world.windows import check_window
 from compiler.world.world import lower_world
 from runtime.requirement import Requirement
 from runtime.scenario import Robot, Scenario, Start
@@ -71,7 +79,7 @@ def compile_parts_of_scenario(
         check_starts(world, robots.found, findings)
         check_sights(world, robots.found, findings)
         check_heights_with(world, robots.found, findings)
-    requirements = _requirements(spec, world, robots, findings)
+    requirements = _requirements(spec, world, robots, duration, findings)
     if world is None or not robots.is_whole or findings.has_errors:
         return None
     scenario = Scenario(
@@ -138,12 +146,22 @@ def _step(spec: ScenarioSpec, robots: list[Robot], findings: Findings) -> Fracti
             findings.error("S352", ("robots", robot.name), message, remedy, key=True)
             return LEAST_STEP
         shared = with_it
-    step = shared / math.ceil(shared / longest) if shared else longest
+    step = step_of(shared, longest) if shared else longest
     if step < LEAST_STEP:
         # Every divisor of what they share that is no longer than wanted is too short.
         message = f"a step up to {seconds(float(longest))} that divides all times is below 0.1 ms"
         findings.error("S352", ("step",), message, f"write 'step: {seconds(float(shared))}'")
+    elif step < SHORT_STEP <= longest:
+        _tell_short_step(robots, findings)
     return max(step, LEAST_STEP)
+
+
+def _tell_short_step(robots: list[Robot], findings: Findings) -> None:
+    """A warning where it is the times of several robots together; each by itself has its own."""
+    each = [common(map(exact, times_of(robot))) for robot in robots]
+    if all(one == 0 or one >= SHORT_STEP for one in each):
+        message, remedy = short_step(exact(time) for robot in robots for time in times_of(robot))
+        findings.warning("S355", ("robots", robots[-1].name), message, remedy, key=True)
 
 
 def times_of(robot: Robot) -> list[float]:
@@ -154,13 +172,15 @@ def times_of(robot: Robot) -> list[float]:
 
 
 def _requirements(
-    spec: ScenarioSpec, world: World | None, robots: Robots, findings: Findings
+    spec: ScenarioSpec, world: World | None, robots: Robots, duration: float, findings: Findings
 ) -> tuple[Requirement, ...]:
     if world is None or not robots.is_whole:
         return ()  # what a run has is not known
     known = quantities_of(world, robots.found)
-    found = [
-        lower_requirement(text, ("require", i), known, findings)
-        for i, text in enumerate(spec.require)
-    ]
-    return tuple(one for one in found if one is not None)
+    found = []
+    for i, text in enumerate(spec.require):
+        one = lower_requirement(text, ("require", i), known, findings)
+        if one is not None:
+            check_window(one, ("require", i), duration, findings)
+            found.append(one)
+    return tuple(found)
