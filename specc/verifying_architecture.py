@@ -1,7 +1,7 @@
 """A recorded architecture: each of its nodes judged by its own spec, where it had its way."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
@@ -12,6 +12,7 @@ from runtime.user_code import UserCodeError, where_is
 from spec_schema.diagnostics import SpecError
 from specc.verifying_arbiter import running
 from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
+from verifier.architectures.telling import controls_as_recorded
 from verifier.fidelity.verify import Judgement
 from verifier.report.examination import Examination
 
@@ -22,12 +23,14 @@ class NodeVerdict:
     """A node, what it was judged by, and what its record shows.
 
     name: `robot.node`. judgement: of a behavior, for judging several recordings together.
+    remarks: what has to be known of how it was judged.
     """
 
     name: str
     spec: Program | Arbiter
     examination: Examination
     judgement: Judgement | None
+    remarks: tuple[str, ...] = ()
 
 
 @final
@@ -47,7 +50,8 @@ class How:
     beside: the folder in which code of the user's own is looked for; None: that of the file of each
     architecture, for one that was compiled just now. seed: of the run, which the chance of its
     arbiters follows from. only: their names; None for all. allow_code: whether arbiters that are
-    code of the user's own may be run.
+    code of the user's own may be run. is_named: whether a spec was named, which may not be the one
+    that ran.
     """
 
     beside: Path | None
@@ -55,6 +59,7 @@ class How:
     only: Collection[str] | None = None
     allow_code: bool = False
     only_verdict: bool = False
+    is_named: bool = False
 
 
 def examine_nodes(
@@ -88,7 +93,9 @@ def _examined(
         if node.behavior >= 0:
             program = architecture.programs[node.behavior]
             made = examine_behavior(program, record, source, only_verdict=how.only_verdict)
-            return NodeVerdict(record.name, made.program, made.examination, made.judgement)
+            told = controls_as_recorded(program, record.columns) if how.is_named else ()
+            examination = _with_notes(made.examination, told)
+            return NodeVerdict(record.name, made.program, examination, made.judgement, told)
         arbiter = architecture.arbiters[node.arbiter]
         # What a recording or an artifact says of its source is somebody's word, and no folder.
         beside = Path(architecture.source.file).parent if how.beside is None else how.beside
@@ -106,3 +113,8 @@ def _examined(
 def _not_allowed(arbiter: Arbiter, beside: Path) -> str:
     place = where_is(arbiter.module, beside)
     return f"{arbiter.module} is code ({place}), which verify runs only with --allow-code"
+
+
+def _with_notes(examination: Examination, notes: tuple[str, ...]) -> Examination:
+    report = examination.report
+    return replace(examination, report=replace(report, notes=(*notes, *report.notes)))

@@ -130,7 +130,14 @@ def verify_carried(
         refuse_losses(trace, log.losses)
     tell("judging")
     required = _required(trace, carried, standard, log)
-    how = How(standard.beside, _seed(carried), standard.only, allow_code, only_verdict)
+    how = How(
+        standard.beside,
+        _seed(carried),
+        standard.only,
+        allow_code,
+        only_verdict,
+        spec is not None,
+    )
     records = records_of(log, {robot.name: robot.architecture for robot in standard.robots})
     records |= {
         robot.name: with_motion(log, robot, with_own_doing(log, robot, records[robot.name]))
@@ -185,7 +192,9 @@ def _verification(each: NodeVerdict, standard: Standard) -> Verification:
     how = standard.how
     if standard.how == "attached to the trace":
         how = f"{each.name.partition('.')[0]}.specc, attached to the trace"
-    return Verification(Found(each.spec, how), each.examination, each.judgement, each.name)
+    return Verification(
+        Found(each.spec, how), each.examination, each.judgement, each.name, each.remarks
+    )
 
 
 def _seed(carried: Carried) -> int:
