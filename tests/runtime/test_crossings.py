@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from runtime.code import Code
-from runtime.crossings import first_crossing, first_passage
 from runtime.flow import flow_of
 from tests.runtime.behaviors import formula_program, state, van_der_pol
+from tests.runtime.crossings import first_crossing, first_passage
 from tests.runtime.hybrids import GRAVITY, bouncing_ball, patrol
 
 PERIOD = 6.66328686

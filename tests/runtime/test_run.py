@@ -17,7 +17,7 @@ from runtime.scenario import Scenario
 from runtime.start import started
 from runtime.world.layout import NoRoomError
 from tests.runtime.first_light import FILE, first_light, short_run
-from verifier.architectures.gathering import Gathered
+from tests.verifier.architectures.gathering import Gathered
 
 SCRIPT = """
 import hashlib

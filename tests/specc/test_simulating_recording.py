@@ -21,8 +21,9 @@ from runtime.run import Run, run
 from specc.cli import main
 from specc.run_standard import carried_by
 from tests.runtime.first_light import first_light, short_run
-from verifier.architectures.gathering import Gathered
-from verifier.architectures.recorded import read_nodes
+from tests.verifier.architectures.gathering import Gathered
+from verifier.architectures.log import open_run
+from verifier.architectures.recorded import records_of, topics_of_nodes
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +170,8 @@ def test_records_read_from_the_file_are_those_gathered_in_the_run(file: Path) ->
     carried = carried_by(file)
     assert carried is not None
     robots = {robot.name: robot.architecture for robot in carried.robots}
-    read = read_nodes(file, robots, scenario.step)["r"]
+    log = open_run(file, topics_of_nodes(robots), scenario.step)
+    read = records_of(log, robots)["r"]
 
     for one, other in zip(read, gathered.records(), strict=True):
         assert np.array_equal(one.times, other.times)

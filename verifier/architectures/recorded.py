@@ -4,7 +4,6 @@ Recordings: `runtime.recording.nodes`. Times count from the beginning of the run
 """
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -21,7 +20,7 @@ from runtime.recording.nodes import (
     topic_of,
 )
 from runtime.recording.tables import Field
-from verifier.architectures.log import RunLog, open_run
+from verifier.architectures.log import RunLog
 from verifier.architectures.nodes import NodeRecord, held_back
 from verifier.architectures.way import has_its_way
 
@@ -30,17 +29,6 @@ WEIGHT: Final = "weight"
 CHOSEN: Final = "choice"
 UNKNOWN: Final = "who acted is not in the recording"
 WHO_ACTS: Final = (Field(ACTS, is_flag=True), Field(WEIGHT))
-
-
-def read_nodes(
-    path: Path, robots: Mapping[str, Architecture], step: float = 0.0
-) -> dict[str, tuple[NodeRecord, ...]]:
-    """By robot, the record of each node in the order of nodes; empty where nothing was recorded.
-
-    Raises:
-        SpecError: the recording can't be opened (V301, V302).
-    """
-    return records_of(open_run(path, topics_of_nodes(robots), step), robots)
 
 
 def topics_of_nodes(robots: Mapping[str, Architecture]) -> dict[str, list[Field]]:

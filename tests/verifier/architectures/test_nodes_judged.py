@@ -15,7 +15,7 @@ from runtime.scheduler.scheduler import Scheduler
 from specc.loading import load_program
 from specc.verifying_architecture import How, NodeVerdict, examine_nodes
 from tests.runtime.scheduler.plane import STEP, N, Plain, Plane, architecture, resolution, scenario
-from verifier.architectures.gathering import Gathered
+from tests.verifier.architectures.gathering import Gathered
 from verifier.architectures.nodes import (
     NodeRecord,
     examine_behavior,
