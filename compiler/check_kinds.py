@@ -39,4 +39,5 @@ def check_kind(loaded: Loaded) -> tuple[tuple[Diagnostic, ...], Wired | None]:
             lower_world(spec, loaded, findings)
         case ScenarioSpec() as spec:
             made = compile_parts_of_scenario(spec, loaded, library, findings)
-    return (*findings.diagnostics, *library.mistakes), made if not library.mistakes else None
+    found = (*findings.diagnostics, *library.mistakes, *library.doubts)
+    return found, made if not library.mistakes else None

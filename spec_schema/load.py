@@ -99,8 +99,11 @@ def load_source(source: Source) -> Loaded:
     return _sound(examine_source(source))
 
 
-def examine(path: FilePath) -> Examined:
-    """Read a spec file as far as it can be read; raises SpecError where it is no YAML for us."""
+def examine(path: FilePath, wanted: str = "behavior") -> Examined:
+    """Read a spec file as far as it can be read; raises SpecError where it is no YAML for us.
+
+    wanted: the kind that it is taken for where nothing in it tells.
+    """
     name = str(path)
     try:
         with path.open("rb") as file:
@@ -112,15 +115,15 @@ def examine(path: FilePath) -> Examined:
     source, problems = decode(name, data)
     if problems:
         raise SpecError(problems)
-    return examine_source(source)
+    return examine_source(source, wanted)
 
 
-def examine_source(source: Source) -> Examined:
+def examine_source(source: Source, wanted: str = "behavior") -> Examined:
     """Check a spec's text as far as possible; raises SpecError where it is no YAML for us."""
     root = read(source)
     places = Places(source, root)
     data = {name: plain(entry.value) for name, entry in root.entries.items()}
-    model = _model_of(data)
+    model = _model_of(data, wanted)
     shape = check_shape(model, data)
     if shape.spec is not None:
         return Examined((), Loaded(source, shape.spec, places), frozenset())
@@ -139,12 +142,12 @@ def _sound(examined: Examined) -> Loaded:
     return examined.loaded
 
 
-def _model_of(data: dict[str, Plain]) -> type[AnySpec]:
+def _model_of(data: dict[str, Plain], wanted: str) -> type[AnySpec]:
     """The model that the document is meant for, even where it does not say so."""
     kind = data.get("kind")
     meant = nearest(kind, MODELS) if isinstance(kind, str) else None
     looks_like = (kind for kind, keys in TELLING.items() if keys & data.keys())
-    return MODELS[meant or next(looks_like, "behavior")]
+    return MODELS[meant or next(looks_like, wanted)]
 
 
 def _diagnostic(places: Places, mistake: Mistake) -> Diagnostic:

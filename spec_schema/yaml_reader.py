@@ -30,7 +30,7 @@ _WORD = re.compile(r"[^\s,\[\]{}]+")
 _FIX_ALIAS = "write the value out: a spec says each thing where it is"
 _FIX_BRACES = "put text that starts with a bracket or brace in quotes"
 _FIX_DIRECTIVE = "remove the line: scalars are those of YAML 1.2 anyway"
-_FIRST_LINES = "start with the lines 'specc: 1' and 'kind: behavior'"
+_FIRST_LINES = "start with the lines 'specc: 1' and 'kind: behavior', or the kind that belongs here"
 
 
 def read(source: Source) -> Mapping:

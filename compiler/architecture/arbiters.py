@@ -22,6 +22,7 @@ from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Loaded, examine
 from spec_schema.units import Unit
 from spec_schema.variables import ConstantSpec, ControlSpec
+from spec_schema.wording import with_article
 
 DECLARING: Final = ("reads", "control", "constants", "output")
 """The sections of an arbiter that declare names."""
@@ -43,7 +44,7 @@ def compile_arbiter(path: FilePath | str, library: Library | None = None) -> Com
     Raises:
         SpecError: with everything that is wrong with it.
     """
-    examined = examine(FilePath(path))
+    examined = examine(FilePath(path), "arbiter")
     loaded, library = examined.loaded, library or Library()
     if loaded is None or not isinstance(loaded.spec, ArbiterSpec):
         raise SpecError(examined.mistakes or [_no_arbiter(loaded)])
@@ -57,7 +58,7 @@ def compile_arbiter(path: FilePath | str, library: Library | None = None) -> Com
 
 def _no_arbiter(loaded: Loaded | None) -> Diagnostic:
     assert loaded is not None, "what could not be read has mistakes"
-    message = f"a {loaded.spec.kind} is no arbiter"
+    message = f"{with_article(loaded.spec.kind)} is no arbiter"
     return loaded.error("S200", ("kind",), message, "name an arbiter spec")
 
 

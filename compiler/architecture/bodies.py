@@ -74,6 +74,11 @@ def lower_body(spec: BodySpec, loaded: Loaded, findings: Findings) -> BodyPart:
         _sensor(name, sensor, (low + high) / 2, loaded, findings)
         for name, sensor in spec.sensors.items()
     )
+    for sensor in sensors:
+        if spec.sensors[sensor.name].height is not None and sensor.height > high:
+            message = f"{sensor.name} is {sensor.height:.4g} m high, above its body ({high:.4g} m)"
+            remedy = "write a height within the body's, or make the body as high as its mast"
+            findings.warning("S338", ("sensors", sensor.name, "height"), message, remedy)
     body = Body(
         name=spec.name,
         about=spec.about or "",

@@ -11,6 +11,7 @@ from spec_schema.architecture import ArchitectureSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Loaded, examine
+from spec_schema.wording import with_article
 
 __all__ = ["CompiledArchitecture", "compile_architecture", "tabulating", "wire_architecture"]
 
@@ -44,7 +45,7 @@ def wire_architecture(path: FilePath | str) -> CompiledArchitecture:
 
 
 def _compiled(path: FilePath, library: Library) -> CompiledArchitecture:
-    examined = examine(path)
+    examined = examine(path, "architecture")
     loaded = examined.loaded
     if loaded is None or not isinstance(loaded.spec, ArchitectureSpec):
         raise SpecError(examined.mistakes or [_no_architecture(loaded)])
@@ -69,5 +70,5 @@ def tabulating(progress: Progress, judge: Judge | None, *, allow_code: bool) -> 
 def _no_architecture(loaded: Loaded | None) -> Diagnostic:
     """That a spec is of another kind."""
     assert loaded is not None, "what could not be read has mistakes"
-    message = f"a {loaded.spec.kind} is no architecture"
+    message = f"{with_article(loaded.spec.kind)} is no architecture"
     return loaded.error("S200", ("kind",), message, "name an architecture spec")

@@ -64,12 +64,18 @@ class Library:
         self._examined: dict[FilePath, Examined | None] = {}
         self._behaviors: dict[FilePath, Behavior | None] = {}
         self._wrong: dict[FilePath, tuple[Diagnostic, ...]] = {}
+        self._doubtful: dict[FilePath, tuple[Diagnostic, ...]] = {}
         self.arbiters: dict[str, Arbiter | None] = {}
 
     @property
     def mistakes(self) -> tuple[Diagnostic, ...]:
         """Every error in the files that were named, in the order in which they were found."""
         return tuple(found for many in self._wrong.values() for found in many)
+
+    @property
+    def doubts(self) -> tuple[Diagnostic, ...]:
+        """Every warning on bodies and worlds that were named."""
+        return tuple(found for many in self._doubtful.values() for found in many)
 
     def behavior(
         self, loaded: Loaded, path: Path, text: str, findings: Findings
@@ -91,7 +97,7 @@ class Library:
         if not file.is_file():
             self._tell_missing(file, text, path, findings)
             return None
-        examined = self._read(file)
+        examined = self._read(file, kind)
         if examined is None:
             return None
         if examined.loaded is None:
@@ -125,6 +131,8 @@ class Library:
         own = Findings(found)
         made = lower(found.spec, found, own)
         self.refuse(found, own.diagnostics)
+        warnings = tuple(d for d in own.diagnostics if d.severity is Severity.WARNING)
+        self._doubtful[FilePath(found.source.name)] = warnings
         return None if own.has_errors else made
 
     def refuse(self, loaded: Loaded, found: tuple[Diagnostic, ...]) -> None:
@@ -143,10 +151,10 @@ class Library:
             self._refuse(file, error.diagnostics)
             return None
 
-    def _read(self, file: FilePath) -> Examined | None:
+    def _read(self, file: FilePath, kind: str) -> Examined | None:
         if file not in self._examined:
             try:
-                self._examined[file] = examine(file)
+                self._examined[file] = examine(file, kind)
             except SpecError as error:
                 self._examined[file] = None
                 self._refuse(file, error.diagnostics)

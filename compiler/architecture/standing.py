@@ -6,6 +6,7 @@ from compiler.architecture.graph import governed_by
 from compiler.architecture.parts import Part, Parts
 from compiler.findings import Findings
 from runtime.architecture import Command, Input, Signal
+from spec_schema.wording import listed
 
 IMITATION = "S222"
 
@@ -19,12 +20,22 @@ def check_standing(
 ) -> None:
     """Warnings on what a robot can't rely on, and on what nobody reads; notes on the rest."""
     read = {board[one.signal].name for many in inputs.values() for one in many if one.signal >= 0}
+    _note_sensors(read, parts, findings)
     for part in parts.nodes.values():
         if not part.is_known:
             continue
         _check_feasible(part, findings)
         _check_effect(part, read, commands[part.name], parts, findings)
         _note_defaults(part, parts, findings)
+
+
+def _note_sensors(read: set[str], parts: Parts, findings: Findings) -> None:
+    """A note on sensors of the body whose readings no node reads."""
+    sensors = () if parts.body is None else parts.body.body.sensors
+    owners = {name.partition(".")[0] for name in read}
+    idle = [sensor.name for sensor in sensors if sensor.name not in owners]
+    if idle:
+        findings.note(f"no node reads the sensor{'s' * (len(idle) > 1)} {listed(idle, last='and')}")
 
 
 def _check_feasible(part: Part, findings: Findings) -> None:

@@ -10,6 +10,7 @@ from compiler.world.scenario_passes import CompiledScenario, compile_parts_of_sc
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Loaded, examine
 from spec_schema.scenario import ScenarioSpec
+from spec_schema.wording import with_article
 
 __all__ = ["CompiledScenario", "compile_scenario"]
 
@@ -30,7 +31,7 @@ def compile_scenario(
         SpecError: with everything that is wrong with it, and with what it names.
     """
     library = tabulating(progress, judge, allow_code=allow_code)
-    examined = examine(FilePath(path))
+    examined = examine(FilePath(path), "scenario")
     loaded = examined.loaded
     if loaded is None or not isinstance(loaded.spec, ScenarioSpec):
         raise SpecError(examined.mistakes or [_no_scenario(loaded)])
@@ -44,5 +45,5 @@ def compile_scenario(
 
 def _no_scenario(loaded: Loaded | None) -> Diagnostic:
     assert loaded is not None, "what could not be read has mistakes"
-    message = f"a {loaded.spec.kind} is no scenario"
+    message = f"{with_article(loaded.spec.kind)} is no scenario"
     return loaded.error("S200", ("kind",), message, "name a scenario spec")

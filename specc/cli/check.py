@@ -78,7 +78,9 @@ def check(
         return _check_claims(files, found, wired, form, allow_code=allow_code)
     _print(found, wired, form)
     if form is ReportFormat.TEXT:
-        say(f"{_specs(len(files))} without mistakes", "bold green")
+        further = "; `specc compile` makes the tables of fields, and looks at their values"
+        done = f"{_specs(len(files))} without mistakes"
+        say(done + further * bool(notes and made), "bold green")
     return Status.YES
 
 
@@ -105,7 +107,7 @@ def _checked(files: Sequence[Path]) -> "tuple[list[Diagnostic], list[Wired]]":
     from compiler.check import check_file
 
     checked = [check_file(file) for file in files]
-    found = [each for one in checked for each in one.diagnostics]
+    found = list(dict.fromkeys(each for one in checked for each in one.diagnostics))
     return found, [one.made for one in checked if one.made is not None]
 
 
