@@ -9,7 +9,7 @@ from compiler.architecture.bodies import FAR, BodyPart, lower_body
 from compiler.architecture.library import Library
 from compiler.findings import Findings
 from compiler.quantities import SECOND, si_value, unit_of
-from runtime.arbiter import Arbiter
+from runtime.arbiter import Arbiter, Paradigm
 from runtime.program import Control, Kind, Program, Role, State, Unit
 from spec_schema.arbiter import ArbiterSpec
 from spec_schema.architecture import ArchitectureSpec, NodeSpec
@@ -155,7 +155,7 @@ def _deciding(part: Part, arbiter: Arbiter | None) -> Part:
     tells = (
         *(_of_number(output.name, output.unit) for output in arbiter.outputs),
         *(Entry(c, Unit("1", 1.0), 0.0, FAR, Kind.CONTINUOUS, (), None) for c in arbiter.choices),
-        Entry("choice", None, 0.0, last, Kind.DISCRETE, arbiter.choices, None),
+        Entry("choice", None, _first(arbiter), last, Kind.DISCRETE, arbiter.choices, None),
     )
     controls = tuple(map(_of_control, arbiter.controls))
     return Part(
@@ -168,6 +168,12 @@ def _deciding(part: Part, arbiter: Arbiter | None) -> Part:
         controls=controls,
         tells=tells,
     )
+
+
+def _first(arbiter: Arbiter) -> float:
+    """The least that `choice` may be: -1 for none of them, unless one always holds."""
+    always = any(rule.when is None for rule in arbiter.rules)
+    return 0.0 if always or arbiter.paradigm is Paradigm.PLAN else -1.0
 
 
 def _module(

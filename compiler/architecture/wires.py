@@ -178,7 +178,8 @@ def _choice(entry: Entry, value: float | str, path: Path, findings: Findings) ->
 def _agree(entry: Entry, signal: Signal, wire: Wire, path: Path, findings: Findings) -> bool:
     """Whether a signal can be what an entry is; a finding where it can't."""
     if entry.kind is Kind.DISCRETE:
-        return _agree_discrete(entry, signal, path, findings)
+        alike = _agree_discrete(entry, signal, path, findings)
+        return alike and _is_always_one(entry, signal, wire, path, findings)
     if entry.unit is not None:
         wanted, given = parse_unit(entry.unit.text), parse_unit(signal.unit.text)
         if wanted.dimension != given.dimension:
@@ -218,13 +219,29 @@ def _agree_discrete(entry: Entry, signal: Signal, path: Path, findings: Findings
         message = f"'{signal.name}' is a number, and '{entry.name}' is one of some values"
         findings.error("S335", path, message, "wire it to a discrete signal, or write a value")
         return False
-    count = round(signal.high - signal.low) + 1
+    count = round(signal.high - max(signal.low, 0.0)) + 1
     named = signal.values == entry.values or not signal.values or not entry.values
     if count == round(entry.high - entry.low) + 1 and named:
         return True
     told = ", ".join(signal.values) or f"{count} values"
     message = f"'{signal.name}' is {told}, and '{entry.name}' is {', '.join(entry.values)}"
     findings.error("S335", path, message, "give both the same values in the same order")
+    return False
+
+
+def _is_always_one(
+    entry: Entry, signal: Signal, wire: Wire, path: Path, findings: Findings
+) -> bool:
+    """Whether the values have one for whatever is told; a finding where they may not."""
+    if signal.low >= entry.low or wire.outside is not None:
+        return True
+    first = entry.values[0] if entry.values else f"{entry.low:g}"
+    message = f"'{signal.name}' is none of its values where no choice holds"
+    remedy = (
+        f"write '{entry.name}: {{from: {signal.name}, outside: inhibit}}' to keep the node from "
+        f"acting there, or 'outside: clip' to take {first}; or let one choice hold always"
+    )
+    findings.error("S333", path, message, remedy)
     return False
 
 

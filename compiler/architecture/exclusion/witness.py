@@ -138,7 +138,9 @@ def said(decider: Decider, outcomes: list[int]) -> str:
 
 def _reading(question: Question, entry: Entry, value: float) -> Reading:
     signal = question.signals[entry.signal]
-    label = signal.values[round(value)] if signal.values else ""
+    label = ""
+    if signal.values:
+        label = "none of its choices" if value < 0.0 else signal.values[round(value)]
     return Reading(signal.name, value, signal.unit, label)
 
 

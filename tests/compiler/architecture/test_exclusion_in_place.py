@@ -1,11 +1,13 @@
 """What a combined behavior proves by acting in place of its parts: only if it surely acts."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from compiler.architecture.exclusion.answer import Answer, Proof, Undecided
 from compiler.architecture.exclusion.decide import decide
+from compiler.check import check
 from runtime.arbiter import Paradigm
 from runtime.architecture import Outside
 from runtime.code import Code
@@ -96,3 +98,41 @@ def test_a_control_that_a_choice_may_set_still_inhibits() -> None:
 
     assert not isinstance(answer, Proof)
     assert case_of(both, setter).both_act({0: [2.0] * 3, 1: [0.0] * 3}, 3) == [0, 1, 2]
+
+
+def test_a_choice_of_nothing_keeps_who_reads_it_from_acting(tmp_path: Path) -> None:
+    """Where no rule holds, `choice` is -1: outside of the values of whom it is wired to."""
+    body, told = (Path(__file__).parents[2] / "golden/bad/parts" / n for n in ("courier", "told"))
+    text = (
+        "specc: 1\nkind: architecture\nname: tried\nbody: {body}.yaml\nnodes:\n"
+        "  one: {{behavior: {seek}.yaml, {sense}}}\n  two: {{behavior: {seek}.yaml, {sense}}}\n"
+        "  both: {{behavior: combined.yaml, period: 50 ms, replaces: [one, two],\n"
+        "    sense: {{left: {{from: bumper.hit, outside: clip}},\n"
+        "      action: {{from: choose.choice, outside: inhibit}}}}}}\n"
+        "  choose: {{arbiter: {rules}.yaml, period: 50 ms, sense: {{ahead: ahead.range}},\n"
+        "    choices: {{forward: [], turn: []}}}}\n"
+    )
+    sense = (
+        "period: 50 ms, sense: {bearing: beacon.bearing, "
+        "distance: {from: beacon.distance, outside: clip}}"
+    )
+    combined = told.with_suffix(".yaml").read_text(encoding="utf-8").replace("told", "combined")
+    combined += "constants: {pace: {value: 0.1, unit: m/s}, spin: {value: 0.1, unit: rad/s}}\n"
+    combined += "output: {go: {unit: m/s, is: pace}, turn: {unit: rad/s, is: spin}}\n"
+    combined += "realizes: {go: base.speed as set-point, turn: base.turn as set-point}\n"
+    (tmp_path / "combined.yaml").write_text(combined, encoding="utf-8")
+    unsure = told.with_name("unsure.yaml").read_text(encoding="utf-8")
+    (tmp_path / "sure.yaml").write_text(
+        unsure.replace("unsure", "sure").replace(", when: ahead > 2 * near", ""), encoding="utf-8"
+    )
+    tried = tmp_path / "tried.yaml"
+
+    def codes(rules: Path) -> set[str]:
+        tried.write_text(
+            text.format(body=body, seek=body.with_name("seek"), sense=sense, rules=rules),
+            encoding="utf-8",
+        )
+        return {found.code for found in check(tried) if found.code != "S362"}
+
+    assert codes(told.with_name("unsure")) == {"S345"}
+    assert codes(tmp_path / "sure") == set()
