@@ -25,6 +25,7 @@ from specc.figures.scene import NOBODY, Glow, Scene, Trails
 from specc.figures.style import look
 from specc.figures.style_names import Style
 from specc.figures.trails import MARGIN, draw_trails, is_by_time, names_of, thinned, time_colors
+from verifier.report.wording import percents
 
 LONG: Final = 6.6
 """Inches of the longer side of the floor."""
@@ -293,7 +294,8 @@ def _lasted(scene: Scene, trails: Trails) -> str:
         for place, name in enumerate(doers):
             shares[name] += float(np.mean(trails.acting[:, robot] == place)) / len(trails.doers)
     shares["nobody"] = float(np.mean(trails.acting == NOBODY))
-    told = [f"{name} {100 * share:.0f} %" for name, share in shares.items() if share >= SHARE]
+    parts = zip(shares.items(), percents([*shares.values()]), strict=True)
+    told = [f"{name} {part}" for (name, share), part in parts if share >= SHARE]
     return f"{lasted}. Acting: {', '.join(told)}" if told else lasted
 
 

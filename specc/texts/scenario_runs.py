@@ -167,7 +167,8 @@ def _requirement_row(text: str, found: Sequence[tuple[str, RequirementResult]]) 
     of_worst.sort(key=lambda each: each[1].robustness)
     if worst is Outcome.SATISFIED:
         source, result = of_worst[0]
-        return RequirementRow(text, worst, count, (f"least in {source}: {result.detail}",))
+        least = f"least in {source}: {result.detail}" if result.detail else ""
+        return RequirementRow(text, worst, count, (least,))
     told = [f"{source}: {result.detail}" for source, result in of_worst[:MOST_TOLD]]
     more = len(of_worst) - MOST_TOLD
     told += [f"and {more} more"] if more > 0 else []

@@ -15,7 +15,7 @@ from specc.simulating import Simulation
 from verifier.report.layout import INDENT, section, table
 from verifier.report.requirement_record import requirements_record, requirements_text
 from verifier.report.requirement_results import Outcome, RequirementResult
-from verifier.report.wording import number, percent, seconds
+from verifier.report.wording import number, percent, percents, seconds
 
 MILLIMETRES: Final = 1e3
 MOST_NAMED: Final = 4
@@ -129,7 +129,8 @@ def _node_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
         if node.behavior >= 0:
             yield f"{node.name} acted", f"{percent(share)} of the time"
     for channel, drivers in driving_shares(run, place).items():
-        told = [f"{name} {percent(share)}" for name, share in drivers.items()]
+        parts = zip(drivers, percents([*drivers.values()]), strict=True)
+        told = [f"{name} {share}" for name, share in parts]
         yield f"{channel} driven by", ", ".join(told)
 
 

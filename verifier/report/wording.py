@@ -1,6 +1,7 @@
 """Numbers and quantities as people read them. Values come in SI and leave in the user's unit."""
 
 import math
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Final
 
@@ -97,6 +98,20 @@ def percent(share: float) -> str:
     if 0.0 < share < 1.0:
         rounded = min(max(rounded, 1), 99)
     return f"{rounded} %"
+
+
+def percents(shares: Sequence[float]) -> list[str]:
+    """Shares of one whole as per cent that add up as the shares do, by the largest remainders.
+
+    >>> percents([0.816, 0.122, 0.062]), percents([1 / 3, 1 / 3, 1 / 3]), percents([])
+    (['82 %', '12 %', '6 %'], ['34 %', '33 %', '33 %'], [])
+    """
+    whole = [math.floor(100.0 * share) for share in shares]
+    rest = [100.0 * share - floor for share, floor in zip(shares, whole, strict=True)]
+    more = round(100.0 * sum(shares)) - sum(whole)
+    for place in sorted(range(len(rest)), key=lambda i: -rest[i])[:more]:
+        whole[place] += 1
+    return [f"{each} %" for each in whole]
 
 
 def seconds(value: float) -> str:
