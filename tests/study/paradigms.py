@@ -1,9 +1,10 @@
 """Three tasks, each done by three paradigms with the same behaviors, and by chance.
 
 Run it: `python -m tests.study.paradigms [light patrol tidy] [--first 1000] [--worlds 50]`.
-A world is decided as soon as it is known whether all that the scenario requires holds; that this
-is what its sentences say is tested in tests/specc/test_paradigms.py. It is left then, but for the
-light: there it runs to its end, so that a touch after the light was found is told as well.
+A world is decided as soon as it is known whether all that the scenario requires holds. That its
+sentences say the same is tested (tests/specc/test_paradigms.py) for light found and touched, a
+patrol that touches, and crates all at walls; not for a patrol that is too late or flat. A world is
+left then, but for the light: it runs to its end, so that a touch after that is told as well.
 Seeds from 2000 on were for building; docs/paradigms.md says which were kept for the tables.
 """
 
