@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import final
 
+from compiler.architecture.leaving import check_leaving
 from compiler.architecture.library import Library
 from compiler.declare import Declarations
 from compiler.findings import Findings
@@ -110,16 +111,18 @@ def _rule(
     choice = spec.choices.index(rule.choose) if rule.choose in spec.choices else 0
     when = _condition(rule.when, (*path, "when"), declared, findings)
     until = _condition(rule.until, (*path, "until"), declared, findings)
-    return Rule(choice, when, until, max(lasts, 0.0), loaded.origin(path))
+    if when is not None and until is not None and lasts == 0.0:
+        check_leaving(when, until, path, declared, findings)
+    codes = [None if expr is None else code_of(expr) for expr in (when, until)]
+    return Rule(choice, codes[0], codes[1], max(lasts, 0.0), loaded.origin(path))
 
 
 def _condition(
     text: str | None, path: Path, declared: Declarations, findings: Findings
-) -> Code | None:
+) -> Expr | None:
     if text is None:
         return None
-    expr = checked(text, path, scope_of(declared), ONE, "the condition", findings)
-    return None if expr is None else code_of(expr)
+    return checked(text, path, scope_of(declared), ONE, "the condition", findings)
 
 
 def _tell_unknown(name: str, choices: tuple[str, ...], path: Path, findings: Findings) -> None:
