@@ -1,6 +1,7 @@
 """Worlds and scenarios from their files: geometry, time, starts, requirements."""
 
 import math
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,10 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.architecture.times import common, exact
+from compiler.architecture.times import common, exact, short_step
 from compiler.check import check
 from compiler.world.overlap import overlap, overlap_floor, within
 from compiler.world.scenario import CompiledScenario, compile_scenario
+from compiler.world.windows import reach_of
 from runtime.world.model import Disc, Polygon, Pose, Shape
 
 PARTS = Path(__file__).parents[2] / "golden" / "bad" / "parts"
@@ -169,3 +171,78 @@ def test_a_step_below_a_tenth_of_a_millisecond_is_refused(tmp_path: Path) -> Non
 
     assert codes(scenario(tmp_path, robots, "step: 0.01 ms")) == ["S352"]
     assert codes(scenario(tmp_path, robots, "step: 1 ms")) == []
+
+
+BARE = """specc: 1
+kind: body
+name: bare
+shape: {circle: 12 cm}
+mass: 3 kg
+drive: {differential: {track: 20 cm, speed: 0.5 m/s, turn: 3 rad/s}}
+"""
+ALONE = """specc: 1
+kind: architecture
+name: {name}
+body: bare.yaml
+nodes: {{avoid: {{behavior: {parts}/avoid.yaml, period: {period}, sense: {{clearance: 1 m}}}}}}
+"""
+
+
+def robots_with(folder: Path, *periods: str) -> str:
+    """Robots whose only node has one of the periods."""
+    (folder / "bare.yaml").write_text(BARE)
+    for place, period in enumerate(periods):
+        text = ALONE.format(name=f"a{place}", parts=PARTS, period=period)
+        (folder / f"a{place}.yaml").write_text(text)
+    named = [f"r{place}: {{architecture: a{place}.yaml}}" for place in range(len(periods))]
+    return f"{{{', '.join(named)}}}"
+
+
+@pytest.mark.parametrize(
+    ("periods", "steps"),
+    [
+        (("50 ms",), 0),
+        (("33.3 ms",), 0),  # the step is a ninth of it
+        (("33.3 ms", "50 ms"), 1),
+        (("20.4 ms", "25.5 ms"), 0),  # 5.1 ms
+        (("20.4 ms", "25.6 ms"), 1),  # 0.4 ms, of both together
+    ],
+)
+def test_a_short_step_is_told_of_once_for_what_forces_it(
+    tmp_path: Path, periods: tuple[str, ...], steps: int
+) -> None:
+    path = scenario(tmp_path, robots_with(tmp_path, *periods))
+
+    assert codes(path).count("S355") == steps
+
+
+def test_times_that_are_proposed_instead_leave_a_step_that_is_not_short() -> None:
+    sensors = [Fraction(1, 10), Fraction(1, 50)]
+    told = short_step([*sensors, Fraction(333, 10_000)])[1]
+    proposed = [Fraction(text) / 1000 for text in re.findall(r"(\d+) ms \(a step", told)]
+
+    assert proposed
+    assert all(common([*sensors, time]) >= Fraction(1, 2000) for time in proposed)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "reach"),
+    [
+        ("eventually within 5 s r.clearance > 1 m", 5.0),
+        ("always r.clearance > 1 m", 0.0),
+        ("always within 3 s (eventually from 1 s to 2 s r.clearance > 1 m)", 5.0),
+        ("always (r.x > 1 m and eventually within 6 s r.x < 1 m)", 6.0),
+        ("r.x < 1 m until within 7 s r.x > 1 m", 7.0),
+        ("eventually after 8 s r.x < 1 m", 8.0),
+    ],
+)
+def test_how_far_a_requirement_looks_ahead_is_the_sum_of_windows_in_one_another(
+    tmp_path: Path, sentence: str, reach: float
+) -> None:
+    robots = f"{{r: {{architecture: {PARTS}/find_light.yaml, at: [3, 1]}}}}"
+    path = scenario(tmp_path, robots, f"require:\n  - {sentence}\n")
+
+    made = compile_scenario(path, in_silence)
+
+    assert reach_of(made.scenario.requirements[0]) == pytest.approx(reach)
+    assert [found.code for found in made.warnings].count("S375") == (reach > 5.0)
