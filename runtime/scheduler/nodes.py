@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import NamedTuple, Protocol, final
+from typing import Final, NamedTuple, Protocol, final
 
 import numpy as np
 
 from runtime.arbiter import Arbiter as CompiledArbiter
+from runtime.arbiter import Paradigm
 from runtime.arbitration.conditions import Conditions, entries_of
 from runtime.arbitration.protocol import Arbiter
 from runtime.arrays import Array, frozen
@@ -18,6 +19,8 @@ from runtime.scheduler.ticker import AGAINST, Ticker
 from runtime.user_code import Callee, UserCodeError, call
 
 NOTHING = frozen([])
+ONE_AT_A_TIME: Final = frozenset({Paradigm.RULES, Paradigm.PLAN})
+"""Arbiters that hold one choice at a time by what they are."""
 REMARKS = ((OUTSIDE, What.OUTSIDE), (BROKEN, What.BROKEN))
 REMARKS_OF_ACTING = ((CHATTERS, What.CHATTERING), (CLIPPED, What.AT_THE_EDGE))
 
@@ -78,7 +81,12 @@ class BehaviorNode:
 
 
 class Learner(NamedTuple):
-    """An arbiter that is given from outside, and what it is rewarded with at its ticks."""
+    """An arbiter that is given from outside, and what it is rewarded with at its ticks.
+
+    In the place of `rules` or of a `plan` only the largest of its numbers counts: these hold one
+    choice at a time, and exclusion may be proved by that. What is proved by the conditions of the
+    arbiter that it stands for does not hold for it; a run tells conflicts.
+    """
 
     arbiter: Arbiter
     reward: Callable[[], float]
@@ -100,6 +108,7 @@ class ArbiterNode:
         entries = [inputs.entries.index(name) for name in entries_of(compiled)]
         self._entries = np.array(entries, dtype=np.int64)
         self._in_order = entries == list(range(len(inputs.entries)))
+        self._holds_one = reward is not None and compiled.paradigm in ONE_AT_A_TIME
         self._has_decided = False
         self._numbers: Array = np.zeros(len(compiled.choices))
 
@@ -112,6 +121,8 @@ class ArbiterNode:
         self._has_decided = True
         self._numbers = self._arbiter.decide(reads, time)
         largest = int(self._numbers.argmax())
+        if self._holds_one:
+            self._numbers = np.where(np.arange(self._numbers.size) == largest, self._numbers, 0.0)
         choice = float(largest) if self._numbers[largest] > 0.0 else -1.0
         outputs = np.concatenate([self._conditions.at(reads), self._numbers, [choice]])
         return Said(reads, outputs, NOTHING, acts, () if acts else (What.OUTSIDE,))
