@@ -17,14 +17,19 @@ def test_all_paradigms_have_the_same_behaviors_to_the_last_byte(task: str) -> No
     assert all(other == first for other in others)
 
 
+def says(task: str, paradigm: str, seed: int, duration: float) -> Outcome:
+    """What the sentences of `require:` say of the same run, worked out by the verifier."""
+    scenario = scenario_of(task, paradigm)
+    return simulate_scenario(scenario, seed=seed, duration=duration).outcome
+
+
 @pytest.mark.parametrize("paradigm", WAYS)
 def test_each_paradigm_finds_the_light_and_the_sentence_says_so_as_well(paradigm: str) -> None:
-    found = outcome("light", paradigm, 2000)
-    made = simulate_scenario(scenario_of("light", paradigm), seed=2000, duration=found.time + 0.1)
+    found = outcome("light", paradigm, 2000, duration=30.0)
 
     assert found.succeeded
     assert found.contacts == 0
-    assert made.outcome is Outcome.SATISFIED
+    assert says("light", paradigm, 2000, found.time + 0.1) is Outcome.SATISFIED
 
 
 @pytest.mark.slow
@@ -38,13 +43,13 @@ def test_each_paradigm_goes_from_post_to_post_and_recharges(paradigm: str) -> No
 
 @pytest.mark.slow
 @pytest.mark.parametrize("paradigm", WAYS)
-def test_each_paradigm_pushes_all_crates_to_walls(paradigm: str) -> None:
-    assert outcome("tidy", paradigm, 1001).succeeded
+def test_each_paradigm_pushes_all_crates_to_walls_and_the_sentence_says_so(paradigm: str) -> None:
+    found = outcome("tidy", paradigm, 1001)
+
+    assert found.succeeded
+    assert says("tidy", paradigm, 1001, found.time + 0.1) is Outcome.SATISFIED
 
 
 def test_a_touch_is_a_failure_and_the_sentence_says_so_as_well() -> None:
-    found = outcome("light", "random", 2001)
-    made = simulate_scenario(scenario_of("light", "random"), seed=2001, duration=30.0)
-
-    assert not found.succeeded
-    assert made.outcome is Outcome.VIOLATED
+    assert not outcome("light", "random", 2001, duration=30.0).succeeded
+    assert says("light", "random", 2001, 30.0) is Outcome.VIOLATED
