@@ -2,9 +2,9 @@
 
 Run it: `python -m tests.study.paradigms [light patrol tidy] [--first 1000] [--worlds 50]`.
 A world is decided as soon as it is known whether all that the scenario requires holds. That its
-sentences say the same is tested (tests/specc/test_paradigms.py) for light found and touched, and for
-crates all at walls; it is not tested for the patrol. A world is left as soon as it is decided, but
-for the light: it runs to its end, so that a touch after that is told as well.
+sentences say the same is tested (tests/specc/test_paradigms.py) for light found and touched, and
+for crates all at walls; not for the patrol. A world is left as soon as it is decided, but for the
+light: it runs to its end, so that a touch after that is told as well.
 Seeds from 2000 on were for building; docs/paradigms.md says which were kept for the tables.
 """
 
