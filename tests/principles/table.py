@@ -182,7 +182,7 @@ PRINCIPLES = (
         "2b",
         "Time is continuous, or as fine as one likes.",
         "The step divides every time that a scenario speaks of, or the scenario is refused "
-        "(`compiler/architecture/timing.py`); physics takes no step over 5 ms "
+        "(`compiler/architecture/times.py`); physics takes no step over 5 ms "
         "(`runtime/world/world.py`).",
         "response times rounded to 10 ms; physics with steps of any length",
         (
