@@ -145,6 +145,8 @@ def _stubs(axes: Axes, plan: Plan, wired: Wired, palette: Palette) -> None:
         if box is None or (x, y) in used or side != "above" or port == ACTS:
             continue
         is_output = port in {one.name for one in box.outputs}
+        if is_output and port in {one.note.lstrip("−") for one in box.tells}:
+            continue  # it is read by no node, but drives a channel
         color = palette.stable if is_output else palette.cycle
         axes.plot([x, x], [y, y + STUB], color=color, lw=0.9, zorder=1)
         marker, at = ("^", y + STUB) if is_output else ("v", y + 0.03)

@@ -14,7 +14,7 @@ BETWEEN: Final = 0.28
 """Between two boxes of a floor."""
 ROW: Final = 0.135
 """The height of a line within a box."""
-EYE: Final = 1.35
+EYE: Final = 1.95
 """The width of a sensor."""
 
 Place: TypeAlias = tuple[float, float]
