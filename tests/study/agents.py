@@ -249,7 +249,9 @@ def posters(directory: Path, minutes: float, seeds: dict[str, int]) -> None:
             scenario_of(AGENTS[name], seed), duration=60.0 * minutes, about=f"World {seed}."
         )
         poster = draw_world(*pictured(run(scenario), ()))
-        write_picture(poster, directory / f"{AGENTS[name].scenario}.png", Style.SCREEN)
+        for suffix in ("png", "svg"):
+            file = directory / f"{AGENTS[name].scenario}.{suffix}"
+            write_picture(poster, file, Style.SCREEN)
 
 
 def main() -> None:
