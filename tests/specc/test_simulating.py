@@ -133,7 +133,9 @@ def test_code_of_ones_own_runs_only_where_that_is_allowed(scenario: Path, tmp_pa
     assert [each.code for each in caught.value.diagnostics] == ["V382"]
     assert "--allow-code" in caught.value.diagnostics[0].message
     allowed = simulate_scenario(scenario, duration=1.0, allow_code=True)
-    assert set(allowed.run.signals["r.choose.go"].values.tolist()) == {1.0}
+    before, *decided = allowed.run.signals["r.choose.go"].values.tolist()
+    assert before == 0.0, "no decision is in effect at the beginning"
+    assert set(decided) == {1.0}
 
 
 def test_requirements_of_a_run_are_judged_from_python() -> None:
