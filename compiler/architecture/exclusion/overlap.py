@@ -7,9 +7,8 @@ from fractions import Fraction
 from typing import Final, final
 
 from compiler.architecture.exclusion.question import Question
+from compiler.architecture.times import common, exact
 
-FINEST: Final = 10**7
-"""Durations are taken as multiples of 1/FINEST s, at the finest (1/3 s stays a third)."""
 MOST: Final = 4000
 """Instants that are looked at."""
 
@@ -64,11 +63,11 @@ class Instant:
 
 def timing_of(question: Question) -> Timing:
     """The clocks of a question, in whole steps."""
-    periods = [_fraction(d.period) for d in question.deciders]
-    responses = [_fraction(d.response_time) for d in question.deciders]
-    rates = [_fraction(s.every) for s in question.signals]
-    delays = [_fraction(s.delay) for s in question.signals]
-    step = _divisor([*periods, *responses, *rates, *delays])
+    periods = [exact(d.period) for d in question.deciders]
+    responses = [exact(d.response_time) for d in question.deciders]
+    rates = [exact(s.every) for s in question.signals]
+    delays = [exact(s.delay) for s in question.signals]
+    step = common([*periods, *responses, *rates, *delays]) or Fraction(1)
     steps = [tuple(int(n / step) for n in many) for many in (periods, responses, rates, delays)]
     turn = math.lcm(*(n for n in (*steps[0], *steps[2]) if n > 0), 1)
     # One turn later everything comes again; until then first versions differ from later ones.
@@ -130,14 +129,3 @@ def _pattern(
                 key = (1, place, 0)
             found.append(numbers.setdefault(key, len(numbers)))
     return tuple(found)
-
-
-def _fraction(seconds: float) -> Fraction:
-    return Fraction(seconds).limit_denominator(FINEST)
-
-
-def _divisor(many: list[Fraction]) -> Fraction:
-    """The largest duration that all are multiples of."""
-    under = math.lcm(*(one.denominator for one in many), 1)
-    over = math.gcd(*(int(one * under) for one in many))
-    return Fraction(over, under) if over else Fraction(1)
