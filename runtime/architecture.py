@@ -37,8 +37,11 @@ class Signal:
 
     @property
     def unsaid(self) -> float:
-        """What is read of it before it was said: 0, or the edge of its domain that is nearest."""
-        return min(max(0.0, self.low), self.high)
+        """What is read of it before it was said: 0, or the edge of its domain that is nearest.
+
+        A choice (or what else has labels) is none of its values then, where it may be none: -1.
+        """
+        return self.low if self.values else min(max(0.0, self.low), self.high)
 
 
 @final

@@ -155,7 +155,15 @@ def _deciding(part: Part, arbiter: Arbiter | None) -> Part:
     tells = (
         *(_of_number(output.name, output.unit) for output in arbiter.outputs),
         *(Entry(c, Unit("1", 1.0), 0.0, FAR, Kind.CONTINUOUS, (), None) for c in arbiter.choices),
-        Entry("choice", None, _first(arbiter), last, Kind.DISCRETE, arbiter.choices, None),
+        Entry(
+            "choice",
+            None,
+            _first(arbiter, part.response_time),
+            last,
+            Kind.DISCRETE,
+            arbiter.choices,
+            None,
+        ),
     )
     controls = tuple(map(_of_control, arbiter.controls))
     return Part(
@@ -170,10 +178,17 @@ def _deciding(part: Part, arbiter: Arbiter | None) -> Part:
     )
 
 
-def _first(arbiter: Arbiter) -> float:
-    """The least that `choice` may be: -1 for none of them, unless one always holds."""
-    always = any(rule.when is None for rule in arbiter.rules)
-    return 0.0 if always or arbiter.paradigm is Paradigm.PLAN else -1.0
+def _first(arbiter: Arbiter, response_time: float) -> float:
+    """The least that `choice` may be: -1 for none of them.
+
+    It is 0 where one always holds, from 0 s on: an arbiter with a response time says nothing yet.
+    """
+    return 0.0 if holds_always(arbiter) and response_time == 0.0 else -1.0
+
+
+def holds_always(arbiter: Arbiter) -> bool:
+    """Whether one of its choices holds at each of its ticks."""
+    return arbiter.paradigm is Paradigm.PLAN or any(rule.when is None for rule in arbiter.rules)
 
 
 def _module(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from compiler.architecture.bodies import FAR
-from compiler.architecture.parts import Entry, Part, Parts
+from compiler.architecture.parts import Entry, Part, Parts, holds_always
 from compiler.architecture.signals import why_unknown
 from compiler.findings import Findings
 from compiler.quantities import ONE, si_within
@@ -137,7 +137,7 @@ def _wired(
         findings.error("S330", at, message, why_unknown(wire.source, board.places, parts))
         return None
     signal = board.signals[place]
-    if not _agree(entry, signal, wire, at, findings):
+    if not _agree(entry, signal, wire, at, parts, findings):
         return None
     outside = Outside(wire.outside) if wire.outside is not None else Outside.CLIP
     return Input(entry.name, place, 0.0, wire.scale, outside, origin)
@@ -175,11 +175,13 @@ def _choice(entry: Entry, value: float | str, path: Path, findings: Findings) ->
     return None
 
 
-def _agree(entry: Entry, signal: Signal, wire: Wire, path: Path, findings: Findings) -> bool:
+def _agree(
+    entry: Entry, signal: Signal, wire: Wire, path: Path, parts: Parts, findings: Findings
+) -> bool:
     """Whether a signal can be what an entry is; a finding where it can't."""
     if entry.kind is Kind.DISCRETE:
         alike = _agree_discrete(entry, signal, path, findings)
-        return alike and _is_always_one(entry, signal, wire, path, findings)
+        return alike and _is_always_one(entry, signal, wire, path, parts, findings)
     if entry.unit is not None:
         wanted, given = parse_unit(entry.unit.text), parse_unit(signal.unit.text)
         if wanted.dimension != given.dimension:
@@ -230,19 +232,29 @@ def _agree_discrete(entry: Entry, signal: Signal, path: Path, findings: Findings
 
 
 def _is_always_one(
-    entry: Entry, signal: Signal, wire: Wire, path: Path, findings: Findings
+    entry: Entry, signal: Signal, wire: Wire, path: Path, parts: Parts, findings: Findings
 ) -> bool:
     """Whether the values have one for whatever is told; a finding where they may not."""
     if signal.low >= entry.low or wire.outside is not None:
         return True
     first = entry.values[0] if entry.values else f"{entry.low:g}"
-    message = f"'{signal.name}' is none of its values where no choice holds"
+    when, instead = _why_none(parts.nodes[signal.name.partition(".")[0]])
+    message = f"'{signal.name}' is none of its values {when}"
     remedy = (
         f"write '{entry.name}: {{from: {signal.name}, outside: inhibit}}' to keep the node from "
-        f"acting there, or 'outside: clip' to take {first}; or let one choice hold always"
+        f"acting there, or 'outside: clip' to take {first}; or {instead}"
     )
     findings.error("S333", path, message, remedy)
     return False
+
+
+def _why_none(part: Part) -> tuple[str, str]:
+    """When no choice of an arbiter is made, and what would change that."""
+    if part.arbiter is not None and holds_always(part.arbiter):
+        late = f"{1000 * part.response_time:g} ms after the start"
+        when = f"before the first decision has effect, {late}"
+        return when, f"give {part.name} a response_time of 0"
+    return "where no choice holds", "let one choice hold always"
 
 
 def _range(low: float, high: float, unit: Unit | None) -> str:

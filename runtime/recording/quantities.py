@@ -16,8 +16,6 @@ METRES: Final = Unit("m", 1.0)
 RADIANS: Final = Unit("rad", 1.0)
 BEFORE: Final = 1.0 - 1e-9
 """Of the end: what takes effect later than that takes none, for the last instant is not lived."""
-NONE_HOLDS: Final = -1.0
-"""A choice that is none."""
 
 
 def quantities_of(
@@ -91,8 +89,7 @@ def _in_effect(
     times, values = later[reached], _column(ticks, ticks.outputs, column)[reached]
     if node.response_time == 0.0 or not ticks.times.size or ticks.times[0] > 0.0:
         return times, values
-    unsaid = NONE_HOLDS if node.arbiter >= 0 and signal.values else signal.unsaid
-    return np.append(0.0, times), np.append(unsaid, values)
+    return np.append(0.0, times), np.append(signal.unsaid, values)
 
 
 def _of_board(robot: str, signal: Signal, times: Array, values: Array) -> Quantity:

@@ -12,10 +12,7 @@ from runtime.world.model import Sensor
 
 @final
 class Board:
-    """The signals of one robot, (s,) in SI; what has not been said yet is 0.
-
-    Or, where 0 is outside a signal's domain, the edge of the domain that is nearest to 0.
-    """
+    """The signals of one robot, (s,) in SI; what has not been said yet is `Signal.unsaid`."""
 
     def __init__(self, architecture: Architecture, sensors: Sequence[Sensor]) -> None:
         unsaid = [signal.unsaid for signal in architecture.board]

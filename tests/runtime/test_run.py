@@ -6,11 +6,13 @@ import itertools
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from compiler.world.quantities_of_run import quantities_of
+from compiler.world.scenario import compile_scenario
 from runtime.recording.scenario_run import recorded_run
 from runtime.run import LOOK, run
 from runtime.scenario import Scenario
@@ -104,8 +106,7 @@ def test_nothing_is_told_after_the_end_and_all_is_known_from_the_beginning(
         begun.scheduler.step()
     left = begun.scheduler.agents[0].board.values
     last = [made.signals[f"r.{signal.name}"].values[-1] for signal in board]
-    says = [place for place, signal in enumerate(board) if not signal.values]
-    assert np.array_equal(left[says], np.array(last)[says])
+    assert np.array_equal(left, last)
 
 
 def slow_to_answer(duration: float, response: float) -> Scenario:
@@ -168,3 +169,27 @@ def test_the_same_run_gives_the_same_bytes_in_a_fresh_process_and_under_load() -
 def _burn(stop: threading.Event) -> None:
     while not stop.is_set():
         np.linalg.eigvals(np.ones((200, 200)))
+
+
+def test_who_reads_a_choice_waits_for_the_first_decision(tmp_path: Path) -> None:
+    parts = Path(__file__).parents[1] / "golden" / "bad" / "parts"
+    (tmp_path / "waits.yaml").write_text(
+        f"specc: 1\nkind: architecture\nname: waits\nbody: {parts}/courier.yaml\nnodes:\n"
+        f"  choose: {{arbiter: {parts}/sure.yaml, period: 50 ms, response_time: 120 ms,\n"
+        "    sense: {ahead: ahead.range}, choices: {forward: [], turn: []}}\n"
+        f"  keep: {{behavior: {parts}/told.yaml, period: 50 ms, sense: {{\n"
+        "    left: {from: bumper.hit, outside: clip},\n"
+        "    action: {from: choose.choice, outside: inhibit}}}\n",
+        encoding="utf-8",
+    )
+    (tmp_path / "first.yaml").write_text(
+        f"specc: 1\nkind: scenario\nname: first\nworld: {parts}/yard.yaml\nduration: 0.5 s\n"
+        "robots: {r: {architecture: waits.yaml, at: [1 m, 1 m, 0]}}\n",
+        encoding="utf-8",
+    )
+
+    made = run(compile_scenario(tmp_path / "first.yaml", lambda *_: None).scenario)
+
+    chosen, keeping = made.signals["r.choose.choice"], made.robots[0].nodes[1]
+    assert (chosen.values[0], chosen.times[1]) == (-1.0, pytest.approx(0.12))
+    assert keeping.times[keeping.acts].min() == pytest.approx(0.15)
