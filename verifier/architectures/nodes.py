@@ -32,11 +32,10 @@ from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.report.examination import Examination
 from verifier.report.wording import listed
-from verifier.traces.trace import Loss, Series, Trace
+from verifier.traces.trace import TICKS, Loss, Series, Trace
 
 HAS_ITS_WAY: Final = "has_its_way"
 """The signal that `judge_when` of a recorded behavior reads."""
-RECORDED: Final = "recorded"
 UNMEASURED: Final = "is not measured: the robot reckons it by itself, so nothing is said of it"
 
 
@@ -167,7 +166,7 @@ def _as_log(program: Program, record: NodeRecord, source: str) -> tuple[Program,
     periods = {s.name: s.high - s.low for s in program.states if s.kind is Kind.PERIODIC}
     series = {each.name: _series(each.name, record, periods) for each in named}
     free = _within_modes(program, record).astype(float)
-    series[HAS_ITS_WAY] = Series(HAS_ITS_WAY, record.times, free, HAS_ITS_WAY, RECORDED)
+    series[HAS_ITS_WAY] = Series(HAS_ITS_WAY, record.times, free, HAS_ITS_WAY, TICKS)
     bindings = [_binding(each.name, each.unit, each.origin) for each in named]
     judged = replace(
         program,
@@ -204,7 +203,7 @@ def examine_decisions(
     chosen = np.where(record.free, record.chosen, -1.0)
     names = [*(read.name for read in arbiter.reads), *(each.name for each in arbiter.controls)]
     series = {name: _series(name, record, {}) for name in names if name in record.columns}
-    series[CHOICE] = Series(CHOICE, record.times, chosen, f"{record.name}.{CHOICE}", RECORDED)
+    series[CHOICE] = Series(CHOICE, record.times, chosen, f"{record.name}.{CHOICE}", TICKS)
     own = replace(arbiter, judge_when=None)
     trace = _trace(series, record, source)
     made = judge_arbiter(own, trace, running, only_verdict=only_verdict)
@@ -216,7 +215,7 @@ def _series(name: str, record: NodeRecord, periods: dict[str, float]) -> Series:
     values = record.columns[name]
     if name in periods:
         values = np.unwrap(values, period=periods[name])
-    return Series(name, record.times, values, f"{record.name}.{name}", RECORDED)
+    return Series(name, record.times, values, f"{record.name}.{name}", TICKS)
 
 
 def _binding(name: str, unit: Unit, origin: str) -> Binding:

@@ -67,7 +67,7 @@ def levels(values: Array, apart: float) -> Array:
 def _untold(part: State | Control, given: Input, values: Array) -> list[NotTold]:
     apart = ALIKE * (part.high - part.low)
     changes = int(np.sum(np.abs(np.diff(values)) > apart / 2.0))
-    untold = [] if changes >= FEW_CHANGES or given.is_noisy else [_rarely(part, changes)]
+    untold = [] if changes >= FEW_CHANGES or given.is_sensed else [_rarely(part, changes)]
     found = levels(values, apart)
     # A slowly moving input has a chain of neighbouring values: one group, and a wide one.
     if len(found) == PAIR and _is_pair(values, found, apart):

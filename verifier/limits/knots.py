@@ -76,7 +76,7 @@ def mean_input(given: Input, times: Array, late: float, *, is_map: bool) -> Arra
         return np.full(len(times), given.value)
     start, stop = times - late, np.append(times[1:], times[-1:]) - late
     now = held(given.series, start)
-    is_name = not np.isfinite(given.low) and not given.is_noisy
+    is_name = not np.isfinite(given.low) and not given.is_sensed
     if is_map or is_name:
         return np.clip(now, given.low, given.high)
     at, values = given.series.times, given.series.values

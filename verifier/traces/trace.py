@@ -1,9 +1,11 @@
 """A trace: what was measured, in SI units, with every loss counted."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 from runtime.arrays import Array
+
+TICKS: Final = "ticks"
 
 
 @final
@@ -12,7 +14,8 @@ class Series:
     """One measured quantity: `times` (T,) seconds, strictly increasing; `values` (T,) SI.
 
     Angles of periodic states are unwrapped. `delay`, `scale`, `offset` and the unit of the
-    binding are already applied. `clock` says which stamp the times are: `sensor` or `log`.
+    binding are already applied. `clock` says which stamp the times are: `sensor` or `log`, or
+    `ticks` where a node of an architecture wrote down what it sampled.
     """
 
     name: str
@@ -20,6 +23,11 @@ class Series:
     values: Array
     path: str
     clock: str
+
+    @property
+    def was_acted_on(self) -> bool:
+        """Whether these are the very values that the robot acted on, at its own ticks."""
+        return self.clock == TICKS
 
 
 @final

@@ -26,7 +26,7 @@ class Input:
     low, high: its domain, infinite where it has no ends.
     series is None for a constant; `value` is that constant. is_known is False where the trace
     neither holds nor declares it, and `value` is only the spec's default.
-    is_noisy: a sensed-only variable, whose measurement noise reaches the prediction.
+    is_sensed: a sensed-only quantity that the trace holds.
     """
 
     name: str
@@ -36,7 +36,15 @@ class Input:
     low: float
     high: float
     is_known: bool
-    is_noisy: bool
+    is_sensed: bool
+
+    @property
+    def is_noisy(self) -> bool:
+        """Whether the noise of its measurement reaches the prediction.
+
+        It does not where the robot acted on these very values: then what looks like noise acted.
+        """
+        return self.is_sensed and self.series is not None and not self.series.was_acted_on
 
 
 @final
@@ -199,7 +207,7 @@ def _input(trace: Trace, name: str, column: int, part: State | Control | None) -
         low=low,
         high=high,
         is_known=series is not None or name in trace.constants,
-        is_noisy=isinstance(part, State) and part.kind is not Kind.DISCRETE and series is not None,
+        is_sensed=isinstance(part, State) and part.kind is not Kind.DISCRETE and series is not None,
     )
 
 

@@ -106,9 +106,9 @@ def setting_of(program: Program, needs: Needs, fidelity: Fidelity) -> Setting:
 
 def _calmed(given: Input, lead: float) -> Input:
     """A sensed-only input averaged over `lead` seconds: its noise alone would open guards."""
-    if given.series is None or not given.is_noisy:
-        return given
     series = given.series
+    if series is None or not given.is_noisy:
+        return given
     width = min(len(series.times), max(1, round(lead / period_of(series.times))))
     kernel = np.ones(width)
     count = np.convolve(np.ones(len(series.times)), kernel, "same")
