@@ -96,12 +96,13 @@ class DriveSpec(StrictModel):
 class SensorSpec(StrictModel):
     """A sensor: what it senses, from where, how often, and how well."""
 
-    senses: Literal["bump", "range", "light", "sight", "odometry", "pose"] = Field(
+    senses: Literal["bump", "range", "light", "sight", "odometry", "gyro", "pose"] = Field(
         description="`bump`: whether something touches it (reading `hit`). `range`: the distance "
         "to the nearest thing in its view (`range`). `light`: how bright it is (`light`, lux). "
         "`sight`: where the nearest of some things is (`seen`, `bearing`, `distance`). "
-        "`odometry`: how the wheels turned (`x`, `y`, `heading`, `speed`, `turn`). `pose`: the "
-        "same without error, which no robot has by itself.",
+        "`odometry`: how the wheels turned (`x`, `y`, `heading`, `speed`, `turn`). `gyro`: how "
+        "fast the body turns, whatever its wheels do (`turn`). `pose`: where it is and how it "
+        "moves, without error, which no robot has by itself.",
         examples=["range"],
     )
     at: PoseText = Field(

@@ -52,6 +52,7 @@ READINGS: Final[Mapping[str, tuple[tuple[str, str, Kind], ...]]] = {
         ("bearing", "rad", Kind.PERIODIC),
         ("distance", "m", Kind.CONTINUOUS),
     ),
+    "gyro": (("turn", "rad/s", Kind.CONTINUOUS),),
     **dict.fromkeys(
         ("odometry", "pose"),
         (

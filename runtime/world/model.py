@@ -181,6 +181,7 @@ class SensorKind(StrEnum):
     LIGHT = "light"  # light
     SIGHT = "sight"  # seen, bearing, distance
     ODOMETRY = "odometry"  # x, y, heading, speed, turn
+    GYRO = "gyro"  # turn
     POSE = "pose"  # x, y, heading, speed, turn
 
 

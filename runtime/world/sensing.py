@@ -113,23 +113,32 @@ class Senses:
 
     def _sense(self, robot: int, name: str, body: Body, sensor: Sensor, seed: int) -> Sense:
         scene = self._scene
+        sense: Sense
         match sensor.kind:
             case SensorKind.BUMP:
-                return _Bump(scene, robot, sensor)
+                sense = _Bump(scene, robot, sensor)
             case SensorKind.RANGE:
-                return _Range(scene, robot, sensor)
+                sense = _Range(scene, robot, sensor)
             case SensorKind.LIGHT:
-                return _Meter(scene, robot, sensor)
+                sense = _Meter(scene, robot, sensor)
             case SensorKind.SIGHT:
-                return _Sight(scene, robot, sensor)
+                sense = _Sight(scene, robot, sensor)
+            case SensorKind.GYRO:
+                sense = _Gyro(scene, robot)
             case SensorKind.POSE:
-                return _Pose(scene, robot, body)
+                sense = _Pose(scene, robot, body)
             case SensorKind.ODOMETRY:
-                chance = generator(seed, "slip", f"{name}.{sensor.name}")
-                odometer = Odometry(sensor, body.drive, chance)
-                self._odometers.append((robot, odometer))
-                return odometer
-        assert_never(sensor.kind)
+                sense = self._odometer(robot, name, body, sensor, seed)
+            case _:
+                assert_never(sensor.kind)
+        return sense
+
+    def _odometer(self, robot: int, name: str, body: Body, sensor: Sensor, seed: int) -> Odometry:
+        """One that goes on with every step."""
+        chance = generator(seed, "slip", f"{name}.{sensor.name}")
+        odometer = Odometry(sensor, body.drive, chance)
+        self._odometers.append((robot, odometer))
+        return odometer
 
 
 @final
@@ -265,6 +274,18 @@ class _Sight:
         to_x, to_y = self._targets[seen, 0] - x, self._targets[seen, 1] - y
         bearing = math.remainder(math.atan2(to_y, to_x) - heading, math.tau)
         return 1.0, bearing, distance
+
+
+@final
+class _Gyro:
+    """How fast the body turns, by itself or pushed, whatever its wheels do."""
+
+    def __init__(self, scene: _Scene, robot: int) -> None:
+        self._around, self._robot = scene.around, robot
+
+    def read(self) -> tuple[float, ...]:
+        """Its turn rate."""
+        return (self._around.motion(self._robot).turn,)
 
 
 @final

@@ -19,6 +19,7 @@ READINGS = {
     SensorKind.LIGHT: ("light",),
     SensorKind.SIGHT: ("seen", "bearing", "distance"),
     SensorKind.ODOMETRY: ("x", "y", "heading", "speed", "turn"),
+    SensorKind.GYRO: ("turn",),
     SensorKind.POSE: ("x", "y", "heading", "speed", "turn"),
 }
 
@@ -195,6 +196,43 @@ def test_a_pose_sensor_says_where_the_robot_is_and_how_it_moves() -> None:
     assert (x, y) == tuple(sim.poses()[0, :2].tolist())
     assert heading == math.remainder(float(sim.poses()[0, 2]), math.tau)
     assert (speed, turn) == pytest.approx((0.3, 0.5), rel=0.02)
+
+
+def test_a_gyro_adds_up_to_the_heading_of_the_body() -> None:
+    """In a step a body first turns as fast as it did, and then changes that."""
+    sim = placed(sensor(SensorKind.GYRO), (2.0, 1.5, 0.3))
+    chance, turned = np.random.default_rng(1), 0.0
+    for _ in range(20):
+        speed, turn = chance.uniform((-0.2, -2.0), (0.2, 2.0))
+        for _ in range(24):
+            turned += said(sim)[0] * STEP
+            drive(sim, speed, turn, seconds=STEP)
+
+    assert sim.poses()[0, 2] - 0.3 == pytest.approx(turned, abs=1e-9)
+
+
+def test_a_gyro_tells_that_it_is_pushed_where_wheels_tell_nothing() -> None:
+    def turns(kind: SensorKind) -> list[float]:
+        long = body(shape=box(0.6, 0.2), mass=1.0)
+        sim = placed(sensor(kind), (2.0, 1.5, 0.5 * math.pi), part=long, others=[(1.7, 1.75, 0.0)])
+        found = []
+        for _ in range(100):  # the other one drives into its side, ahead of its middle
+            drive(sim, 0.3, 0.0, seconds=STEP, robot=1)
+            found.append(said(sim)[-1])
+        return found
+
+    assert max(map(abs, turns(SensorKind.ODOMETRY))) == 0.0
+    assert min(turns(SensorKind.GYRO)) < -0.1
+
+
+def test_a_gyro_is_right_where_wheels_are_not_as_large_as_they_are_said_to_be() -> None:
+    gyro = placed(sensor(SensorKind.GYRO), (1.0, 1.5, 0.0))
+    odometry = placed(sensor(SensorKind.ODOMETRY, slip=0.05), (1.0, 1.5, 0.0))
+    for sim in (gyro, odometry):
+        drive(sim, 0.4, 0.0, seconds=1.0)
+
+    assert said(gyro)[0] == pytest.approx(0.0, abs=1e-9)
+    assert abs(said(odometry)[-1]) > 0.01
 
 
 def test_odometry_without_slip_is_where_the_robot_is_seen_from_its_start() -> None:
