@@ -1,6 +1,8 @@
 """The two agents of the thesis's section 2.5, with a bumper alone: who explores, who gets stuck?
 
-Run it: `python -m tests.study.agents [--worlds 8] [--minutes 60] [--posters DIRECTORY]`.
+Run it: `python -m tests.study.agents [--worlds 8] [--minutes 60] [--workers 2]`.
+What it prints are the tables of docs/agents.md; `--posters DIRECTORY --minutes 10` draws its
+pictures.
 
 *Covered*: the share of the cells, 20 cm wide, that the middle of the agent can reach (for the cart:
 that of the largest circle within it) and did reach.
@@ -15,8 +17,8 @@ was its rule that held it.
 import argparse
 import dataclasses
 import os
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,9 +67,14 @@ class Agent(NamedTuple):
 
 
 AGENTS = {
-    "walker": Agent("random_walker", 0.15, None, "89 to 100 % | 0 s |"),
-    "cart": Agent("bumping_cart", 0.12, None, "14 to 66 % | 2,272 to 3,522 s |"),
-    "deaf cart": Agent("bumping_cart", 0.12, 0.0, "not tried | |"),
+    "walker": Agent("random_walker", 0.15, None, "89 to 100 % | in 0 of 8 |"),
+    "cart": Agent(
+        "bumping_cart",
+        0.12,
+        None,
+        "14 to 66 % | in 8 of 8, for up to 3,522 s | | 15 to 49 cm in 7 of 8",
+    ),
+    "deaf cart": Agent("bumping_cart", 0.12, 0.0, "not tried"),
 }
 """`before`: what a prototype of this study found, another engine with other worlds. The deaf cart
 does not feel what it hits while it backs up and turns."""
@@ -212,33 +219,57 @@ def longest(holds: Booleans) -> float:
 
 
 def table(worlds: int, minutes: float, workers: int) -> Iterator[str]:
-    """Markdown: a row for each agent and world, and what they come to."""
-    yield "| agent | world | covered | stuck for | hemmed in for | let go: moves |"
-    yield "|---|---|---|---|---|---|"
+    """Markdown, as docs/agents.md has it: two tables, a row for each world, and the CPU time."""
+    cpu: dict[str, float] = {}
     with ProcessPoolExecutor(workers) as pool:
-        for name, agent in AGENTS.items():
-            seeds = range(worlds)
-            found = pool.map(explored, [name] * worlds, seeds, [60.0 * minutes] * worlds)
-            told = []
-            for seed, report in zip(seeds, found, strict=True):
-                told.append(report)
-                yield (
-                    f"| {name} | {seed} | {100.0 * report.covered:.0f} % | {report.stuck:,.0f} s "
-                    f"| {report.hemmed:,.0f} s | {100.0 * report.let_go:.0f} cm |"
-                )
-            yield f"| **{name}** | all | {span(told)} | |"
-            yield f"| {name} | prototype | {agent.before} | |"
-            yield f"| {name} | CPU time | {sum(one.cpu for one in told):.0f} s | | | |"
+        yield from rows(("walker", "cart"), worlds, minutes, pool, cpu)
+        yield f"| prototype | {AGENTS['walker'].before} | {AGENTS['cart'].before} |"
+        yield ""
+        yield from rows(("deaf cart",), worlds, minutes, pool, cpu)
+    yield ""
+    yield "CPU time: " + ", ".join(f"{took:.0f} s for the {name}" for name, took in cpu.items())
 
 
-def span(told: list[Report]) -> str:
-    """The least and the largest."""
-    least = [min(column) for column in zip(*told, strict=True)]
-    most = [max(column) for column in zip(*told, strict=True)]
-    return (
-        f"{100.0 * least[0]:.0f} to {100.0 * most[0]:.0f} % | {least[1]:,.0f} to {most[1]:,.0f} s "
-        f"| {least[2]:,.0f} to {most[2]:,.0f} s"
-    )
+def rows(
+    names: Sequence[str], worlds: int, minutes: float, pool: Executor, cpu: dict[str, float]
+) -> Iterator[str]:
+    """A table of agents side by side: its head, each world, and what they come to.
+
+    cpu: gets the seconds that each agent took. How far the last agent gets if let go is told.
+    """
+    heads = [f"{name} covers | stuck for | hemmed in for" for name in names]
+    yield f"| world | {' | '.join(heads)} | let go, it moves |"
+    yield "|---" * (3 * len(names) + 2) + "|"
+    jobs = [(name, seed) for seed in range(worlds) for name in names]
+    found = pool.map(explored, *zip(*jobs, strict=True), [60.0 * minutes] * len(jobs))
+    told: dict[str, list[Report]] = {name: [] for name in names}
+    for seed in range(worlds):
+        for name in names:
+            told[name].append(next(found))
+        row = [cells(told[name][-1]) for name in names]
+        let_go = told[names[-1]][-1].let_go
+        yield f"| {seed} | {' | '.join(row)} | {100.0 * let_go:.0f} cm |"
+    yield f"| all | {' | '.join(span(each) for each in told.values())} | |"
+    cpu |= {name: sum(one.cpu for one in each) for name, each in told.items()}
+
+
+def cells(one: Report) -> str:
+    """Of one agent in one world."""
+    return f"{100.0 * one.covered:.0f} % | {one.stuck:,.0f} s | {one.hemmed:,.0f} s"
+
+
+def span(told: Sequence[Report]) -> str:
+    """The least and the largest share that was covered; in how many worlds it was stuck, hemmed."""
+    shares = [100.0 * one.covered for one in told]
+    stuck = counted([one.stuck for one in told])
+    hemmed = counted([one.hemmed for one in told])
+    return f"{min(shares):.0f} to {max(shares):.0f} % | {stuck} | {hemmed}"
+
+
+def counted(spells: Sequence[float]) -> str:
+    """In how many worlds, and the longest of their spells."""
+    count = sum(one > 0.0 for one in spells)
+    return f"in {count} of {len(spells)}" + (f", for up to {max(spells):,.0f} s" if count else "")
 
 
 def posters(directory: Path, minutes: float, seeds: dict[str, int]) -> None:
