@@ -1,5 +1,6 @@
 """From the file of an architecture to what the runtime runs."""
 
+from dataclasses import replace
 from pathlib import Path as FilePath
 
 from compiler.architecture.library import Behavior, Library, checked_only
@@ -54,7 +55,7 @@ def _compiled(path: FilePath, library: Library) -> CompiledArchitecture:
     mistakes = (*examined.mistakes, *findings.diagnostics, *library.mistakes)
     if found is None or any(one.severity is Severity.ERROR for one in mistakes):
         raise SpecError(mistakes)
-    return found
+    return replace(found, warnings=(*found.warnings, *library.doubts))
 
 
 def tabulating(progress: Progress, judge: Judge | None, *, allow_code: bool) -> Library:

@@ -74,7 +74,7 @@ class Library:
 
     @property
     def doubts(self) -> tuple[Diagnostic, ...]:
-        """Every warning on bodies and worlds that were named."""
+        """Every warning on bodies, worlds, arbiters and architectures that were named."""
         return tuple(found for many in self._doubtful.values() for found in many)
 
     def behavior(
@@ -130,14 +130,14 @@ class Library:
             return None
         own = Findings(found)
         made = lower(found.spec, found, own)
-        self.refuse(found, own.diagnostics)
-        warnings = tuple(d for d in own.diagnostics if d.severity is Severity.WARNING)
-        self._doubtful[FilePath(found.source.name)] = warnings
+        self.keep(found, own.diagnostics)
         return None if own.has_errors else made
 
-    def refuse(self, loaded: Loaded, found: tuple[Diagnostic, ...]) -> None:
-        """Keep what is wrong in a spec that was named."""
-        self._refuse(FilePath(loaded.source.name), found)
+    def keep(self, loaded: Loaded, found: tuple[Diagnostic, ...]) -> None:
+        """Keep what is wrong or doubtful in a spec that was named."""
+        file = FilePath(loaded.source.name)
+        self._refuse(file, found)
+        self._doubtful[file] = tuple(d for d in found if d.severity is Severity.WARNING)
 
     def _refuse(self, file: FilePath, found: tuple[Diagnostic, ...]) -> None:
         errors = tuple(d for d in found if d.severity is Severity.ERROR)

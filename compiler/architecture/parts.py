@@ -131,7 +131,7 @@ def _arbiter(
     if file not in library.arbiters:
         own = Findings(found)
         arbiter = lower_arbiter(found.spec, found, library, own)
-        library.refuse(found, own.diagnostics)
+        library.keep(found, own.diagnostics)
         library.arbiters[file] = None if own.has_errors else arbiter
     return library.arbiters[file]
 

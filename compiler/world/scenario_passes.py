@@ -29,7 +29,7 @@ from runtime.requirement import Requirement
 from runtime.scenario import Robot, Scenario, Start
 from runtime.world.model import World
 from spec_schema.architecture import ArchitectureSpec
-from spec_schema.diagnostics import Diagnostic, Severity
+from spec_schema.diagnostics import Diagnostic
 from spec_schema.load import Loaded
 from spec_schema.places import Path
 from spec_schema.scenario import RobotSpec, ScenarioSpec
@@ -39,7 +39,7 @@ from spec_schema.world import WorldSpec
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class CompiledScenario:
-    """A scenario, and the warnings and choices on the way to it."""
+    """A scenario, the warnings on it and on what it names, and the choices on the way to it."""
 
     scenario: Scenario
     warnings: tuple[Diagnostic, ...]
@@ -54,7 +54,6 @@ class Robots:
     found: list[Robot] = field(default_factory=list)
     is_whole: bool = True
     compiled: dict[str, CompiledArchitecture | None] = field(default_factory=dict)
-    warnings: tuple[Diagnostic, ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -96,7 +95,7 @@ def compile_parts_of_scenario(
     )
     if not is_small_enough(scenario, findings):
         return None
-    warnings = (*findings.diagnostics, *robots.warnings)
+    warnings = (*findings.diagnostics, *library.doubts)
     return CompiledScenario(scenario, warnings, (*findings.notes, *robots.notes))
 
 
@@ -119,8 +118,7 @@ def _add(
     if file not in robots.compiled:
         own = Findings(found)
         robots.compiled[file] = compile_parts(found.spec, found, library, own)
-        library.refuse(found, own.diagnostics)
-        robots.warnings += tuple(d for d in own.diagnostics if d.severity is Severity.WARNING)
+        library.keep(found, own.diagnostics)
         robots.notes += own.notes
     compiled = robots.compiled[file]
     if compiled is None:

@@ -76,3 +76,31 @@ def come_through(folder: Path, name: str, spoil: Callable[[str], str]) -> None:
         assert own <= told(check(architecture))
         assert own <= told(refused(lambda: wire_architecture(architecture)))
         assert own <= told(refused(lambda: compile_architecture(architecture, in_silence)))
+
+
+DOUBTS = {
+    "courier.yaml": ("lamp: {senses: light", "lamp: {senses: light, height: 50 cm", "S338"),
+    "find_light.yaml": ("period: 100 ms", "period: 33.3 ms", "S355"),
+}
+
+
+@pytest.mark.parametrize("name", DOUBTS)
+def test_a_doubt_is_told_once_by_each_that_names_the_file(tmp_path: Path, name: str) -> None:
+    shutil.copytree(PARTS, tmp_path, dirs_exist_ok=True)
+    file, scenario = tmp_path / name, tmp_path / "first_light.yaml"
+    architecture = tmp_path / "find_light.yaml"
+    sound, doubtful, code = DOUBTS[name]
+    file.write_text(file.read_text("utf-8").replace(sound, doubtful), "utf-8")
+    one = "robots: {r: {architecture: find_light.yaml, at: [3, 1]}"
+    text = scenario.read_text("utf-8").replace(one, one + one[8:].replace("{r:", ", other:", 1))
+    scenario.write_text(text.replace("at: [3, 1]}, other", "at: [1, 1]}, other"), "utf-8")
+
+    told_of = [
+        check(scenario),
+        check(architecture),
+        compile_scenario(scenario, in_silence).warnings,
+        compile_architecture(architecture, in_silence).warnings,
+        wire_architecture(architecture).warnings,
+    ]
+
+    assert [[each.code for each in found].count(code) for found in told_of] == [1] * 5
