@@ -52,7 +52,7 @@ class Box:
 @final
 @dataclass(frozen=True, slots=True)
 class Eye:
-    """A sensor with those of its readings that are read."""
+    """A sensor with those of its readings that nodes read: none where nobody does."""
 
     name: str
     what: str

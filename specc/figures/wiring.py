@@ -16,7 +16,19 @@ from specc.figures.paper import axes_at, new_figure
 from specc.figures.style import look
 from specc.figures.style_names import Style
 from specc.figures.wiring_layout import plan_of
-from specc.figures.wiring_plan import ROW, Frame, Plan
+from specc.figures.wiring_plan import (
+    CHANNEL,
+    NAMED,
+    ROW,
+    SENSOR,
+    SMALL,
+    TINY,
+    Frame,
+    Plan,
+    claim_text,
+    how_resolved,
+    unread_text,
+)
 from specc.wired import ACTS, Box, Eye, Mouth, Port, Sort, Wired
 
 EDGE: Final = 0.15
@@ -26,8 +38,6 @@ SIDE: Final = 0.42
 RIM: Final = 0.03
 """Inches that edges may stick out."""
 STUB: Final = 0.13
-SMALL: Final = 7.0
-TINY: Final = 6.0
 
 SAID: Final = {
     Sort.READING: "a sensor's reading",
@@ -51,15 +61,14 @@ def draw_wiring(wired: Wired, style: Style = Style.SCREEN) -> Figure:
         axes.set_axis_off()
         _floors(axes, plan, wired, palette)
         _wires(axes, plan, wired, palette)
-        _stubs(axes, plan, wired, palette)
+        free = _stubs(axes, plan, wired, palette)
         for box in wired.boxes:
             _box(axes, plan, box, palette)
         for mouth in wired.mouths:
             _mouth(axes, plan, mouth, palette)
         for eye in wired.eyes:
-            if eye.name in plan.eyes:
-                _eye(axes, plan.eyes[eye.name], eye, palette)
-        _words(figure, wired, palette)
+            _eye(axes, plan, eye, palette)
+        _words(figure, wired, free, palette)
     return figure
 
 
@@ -137,9 +146,14 @@ def _wires(axes: Axes, plan: Plan, wired: Wired, palette: Palette) -> None:
             )  # fmt: skip
 
 
-def _stubs(axes: Axes, plan: Plan, wired: Wired, palette: Palette) -> None:
-    """Ends of control interfaces that nobody uses: controls wait, outputs are not read."""
+def _stubs(axes: Axes, plan: Plan, wired: Wired, palette: Palette) -> set[str]:
+    """Ends of control interfaces that nobody uses: controls wait, outputs are not read.
+
+    Returns:
+        The markers that were drawn: `v` of controls, `^` of outputs.
+    """
     used = {place for run in plan.runs for place in run.joins}
+    drawn = set()
     for (name, side, port), (x, y) in plan.ports.items():
         box = next((box for box in wired.boxes if box.name == name), None)
         if box is None or (x, y) in used or side != "above" or port == ACTS:
@@ -151,6 +165,8 @@ def _stubs(axes: Axes, plan: Plan, wired: Wired, palette: Palette) -> None:
         axes.plot([x, x], [y, y + STUB], color=color, lw=0.9, zorder=1)
         marker, at = ("^", y + STUB) if is_output else ("v", y + 0.03)
         axes.plot(x, at, marker, ms=4.2, mec=color, mfc=palette.paper, mew=0.8, zorder=3)
+        drawn.add(marker)
+    return drawn
 
 
 def _box(axes: Axes, plan: Plan, box: Box, palette: Palette) -> None:
@@ -160,7 +176,7 @@ def _box(axes: Axes, plan: Plan, box: Box, palette: Palette) -> None:
     spread = 0.5 * (frame.height - ROW * (3 + len(box.notes)))
     top = frame.y + frame.height - spread
     axes.text(
-        middle, top, box.name, ha="center", va="top", fontsize=9.5, fontweight="bold", zorder=5
+        middle, top, box.name, ha="center", va="top", fontsize=NAMED, fontweight="bold", zorder=5
     )
     lines = "\n".join((box.what, box.clock, *box.notes))
     small: Look = {"ha": "center", "va": "top", "fontsize": SMALL, "color": palette.faint}
@@ -192,15 +208,12 @@ def _mouth(axes: Axes, plan: Plan, mouth: Mouth, palette: Palette) -> None:
     _rounded(axes, frame, palette, color, 1.8 if mouth.is_contested else 1.0)
     middle = frame.x + 0.5 * frame.width
     axes.text(
-        middle, frame.y + 3.1 * ROW, mouth.name, ha="center", va="top", fontsize=9.0,
+        middle, frame.y + 3.1 * ROW, mouth.name, ha="center", va="top", fontsize=CHANNEL,
         fontweight="bold", zorder=5,
     )  # fmt: skip
-    how = mouth.what
-    if mouth.is_contested:
-        how = f"◆ {len(mouth.claims)} reach it: {mouth.what}"
     axes.text(
-        middle, frame.y + 2.0 * ROW, how, ha="center", va="top", fontsize=SMALL, color=color,
-        zorder=5,
+        middle, frame.y + 2.0 * ROW, how_resolved(mouth), ha="center", va="top", fontsize=SMALL,
+        color=color, zorder=5,
     )  # fmt: skip
     axes.text(
         middle, frame.y + 1.05 * ROW, f"at rest: {mouth.rest}", ha="center", va="top",
@@ -208,21 +221,29 @@ def _mouth(axes: Axes, plan: Plan, mouth: Mouth, palette: Palette) -> None:
     )  # fmt: skip
     for port in mouth.claims:
         x, y = plan.ports[mouth.name, "above", port.name]
-        text = f"{port.note} {port.name}".strip()
-        axes.text(x, y - 0.05, text, ha="center", va="top", fontsize=SMALL, zorder=5)
+        axes.text(x, y - 0.05, claim_text(port), ha="center", va="top", fontsize=SMALL, zorder=5)
 
 
-def _eye(axes: Axes, frame: Frame, eye: Eye, palette: Palette) -> None:
-    _rounded(axes, frame, palette, palette.nullcline, 1.0)
+def _eye(axes: Axes, plan: Plan, eye: Eye, palette: Palette) -> None:
+    """A sensor; faint and in one line where nobody reads it."""
+    frame = plan.eyes[eye.name]
     x, top = frame.x + 0.08, frame.y + frame.height - 0.06
-    axes.text(x, top, eye.name, va="top", fontsize=8.5, fontweight="bold", zorder=5)
-    small: Look = {"va": "top", "fontsize": TINY, "color": palette.faint, "zorder": 5}
-    axes.text(x, top - 1.15 * ROW, f"{eye.what}\n{eye.clock}", linespacing=1.2, **small)
-    for row, name in enumerate(eye.readings):
-        y = frame.y + frame.height * (1.0 - (row + 0.5) / len(eye.readings))
-        axes.text(
-            frame.x + frame.width - 0.06, y, name, ha="right", va="center", fontsize=SMALL, zorder=5
-        )
+    right = frame.x + frame.width - 0.06
+    name: Look = {"fontsize": SENSOR, "fontweight": "bold", "zorder": 5}
+    small: Look = {"fontsize": TINY, "color": palette.faint, "zorder": 5}
+    if not eye.readings:
+        _rounded(axes, frame, palette, palette.faint, 0.5)
+        middle = frame.y + 0.5 * frame.height
+        axes.text(x, middle, eye.name, va="center", color=palette.faint, **name)
+        axes.text(right, middle, unread_text(eye), ha="right", va="center", **small)
+        return
+    _rounded(axes, frame, palette, palette.nullcline, 1.0)
+    axes.text(x, top, eye.name, va="top", **name)
+    lines = f"{eye.what}\n{eye.clock}"
+    axes.text(x, top - 1.15 * ROW, lines, va="top", linespacing=1.2, **small)
+    for reading in eye.readings:
+        y = plan.exits[eye.name, reading][1]
+        axes.text(right, y, reading, ha="right", va="center", fontsize=SMALL, zorder=5)
 
 
 def _rounded(axes: Axes, frame: Frame, palette: Palette, color: str, width: float) -> None:
@@ -240,17 +261,19 @@ def _rounded(axes: Axes, frame: Frame, palette: Palette, color: str, width: floa
     )
 
 
-def _words(figure: Figure, wired: Wired, palette: Palette) -> None:
-    """The title, what it does, and what the lines mean."""
+def _words(figure: Figure, wired: Wired, free: set[str], palette: Palette) -> None:
+    """The title, what it does, and what lines mean; free: the markers of what nobody uses."""
     width, height = figure.get_size_inches()
     x = EDGE / width
     figure.text(x, 1.0 - 0.08 / height, wired.name, fontsize=12.5, fontweight="bold", va="top")
     figure.text(x, 1.0 - 0.33 / height, wired.about, fontsize=8.5, color=palette.faint, va="top")
     present = {net.sort for net in wired.nets}
     entries = [line_entry(SAID[sort], **line_of(sort, palette)) for sort in Sort if sort in present]
-    free: Look = {"linestyle": "None", "ms": 4.2, "mfc": palette.paper}
-    entries.append(line_entry("control, at its value", marker="v", mec=palette.cycle, **free))
-    entries.append(line_entry("output, unread", marker="^", mec=palette.stable, **free))
+    hollow: Look = {"linestyle": "None", "ms": 4.2, "mfc": palette.paper}
+    if "v" in free:
+        entries.append(line_entry("control, at its value", marker="v", mec=palette.cycle, **hollow))
+    if "^" in free:
+        entries.append(line_entry("output, unread", marker="^", mec=palette.stable, **hollow))
     figure.legend(
         handles=[entry.handles[0] for entry in entries],
         labels=[entry.label for entry in entries],

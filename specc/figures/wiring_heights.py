@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from specc.figures.wiring_plan import (
-    EYE,
     ROW,
     End,
     Frame,
@@ -14,13 +13,16 @@ from specc.figures.wiring_plan import (
     Run,
     Trunk,
     box_height,
+    eyes_width,
     span_of,
 )
-from specc.wired import Box, Net, Sort, Wired
+from specc.wired import Box, Eye, Wired
 
 LANE: Final = 0.13
 MARGIN: Final = 0.24
 """Between a floor and its nearest lane."""
+APART: Final = 0.05
+"""Between the line of a reading from its sensor and any lane, at least."""
 
 
 @final
@@ -62,14 +64,16 @@ def raised(wired: Wired, columns: Columns) -> Plan:
     runs = tuple(
         run for net in range(len(wired.nets)) for run in _runs(net, columns, storeys, ports)
     )
+    exits = _exits(wired, eyes, sorted({run.y for run in runs}))
     trunks = tuple(
-        _trunk(net, columns, runs, _exit(wired, eyes, wired.nets[net])) for net in columns.trunk_x
+        _trunk(net, columns, runs, exits.get(wired.nets[net].source)) for net in columns.trunk_x
     )
     left, inner = columns.inside
     width = max([left + inner + 0.2, *(x + 0.1 for x in columns.trunk_x.values())])
+    height = max([storeys.height, *(frame.y + frame.height for frame in eyes.values())])
     return Plan(
-        width, storeys.height, storeys.boxes, storeys.mouths, eyes, storeys.bands, ports, runs,
-        trunks,
+        width, height, storeys.boxes, storeys.mouths, eyes, storeys.bands, ports, runs, trunks,
+        exits,
     )  # fmt: skip
 
 
@@ -130,25 +134,43 @@ def _trunk(index: int, columns: Columns, runs: Sequence[Run], start: Place | Non
 
 
 def _eyes(wired: Wired, height: float) -> dict[str, Frame]:
-    """Sensors at the left, in the middle of the height."""
-    seen = [eye for eye in wired.eyes if eye.readings]
-    sizes = [ROW * (3 + max(len(eye.readings) - 1, 0)) + 0.16 for eye in seen]
-    gap = 0.15
-    total = sum(sizes) + gap * max(len(seen) - 1, 0)
+    """Sensors at the left, in the middle of the height; those that nobody reads below."""
+    order = sorted(wired.eyes, key=lambda eye: not eye.readings)
+    sizes = [_eye_height(eye) for eye in order]
+    gaps = [0.15 if eye.readings else 0.07 for eye in order[1:]]
+    width = eyes_width(wired)
+    total = sum(sizes) + sum(gaps)
     y = max(0.5 * (height + total), total)
     found = {}
-    for eye, size in zip(seen, sizes, strict=True):
-        found[eye.name] = Frame(0.0, y - size, EYE, size)
-        y -= size + gap
+    for eye, size, gap in zip(order, sizes, [0.0, *gaps], strict=True):
+        y -= gap + size
+        found[eye.name] = Frame(0.0, y, width, size)
     return found
 
 
-def _exit(wired: Wired, eyes: Mapping[str, Frame], net: Net) -> Place | None:
-    """Where a reading leaves its sensor; None of what is no reading."""
-    if net.sort is not Sort.READING:
-        return None
-    frame = eyes[net.source[0]]
-    eye = next(eye for eye in wired.eyes if eye.name == net.source[0])
-    row = eye.readings.index(net.source[1])
-    share = (row + 0.5) / len(eye.readings)
-    return frame.x + frame.width, frame.y + frame.height * (1.0 - share)
+def _eye_height(eye: Eye) -> float:
+    return ROW * (2 + len(eye.readings)) + 0.16 if eye.readings else ROW + 0.1
+
+
+def _exits(
+    wired: Wired, eyes: Mapping[str, Frame], lanes: Sequence[float]
+) -> dict[tuple[str, str], Place]:
+    """Where readings leave their sensors: spread evenly, and then moved off the lanes."""
+    found = {}
+    for eye in wired.eyes:
+        frame = eyes[eye.name]
+        for row, name in enumerate(eye.readings):
+            even = frame.y + frame.height * (1.0 - (row + 0.5) / len(eye.readings))
+            found[eye.name, name] = (frame.x + frame.width, _off(even, lanes))
+    return found
+
+
+def _off(y: float, lanes: Sequence[float]) -> float:
+    """The nearest height that no lane is too near to.
+
+    >>> _off(1.0, [0.0, 2.0]), _off(1.01, [1.0, 2.0])
+    (1.0, 1.05)
+    """
+    heights = [y, *(lane + side * APART for lane in lanes for side in (-1.0, 1.0))]
+    free = [at for at in heights if all(abs(at - lane) > 0.999 * APART for lane in lanes)]
+    return min(free, key=lambda at: abs(at - y), default=y)

@@ -15,19 +15,18 @@ from specc.figures.wiring_heights import Columns, raised
 from specc.figures.wiring_plan import (
     BETWEEN,
     COLUMN,
-    EYE,
     End,
     Plan,
     box_width,
     claim_slot,
+    eyes_width,
     mouth_width,
+    names_width,
     slot,
     span_of,
 )
 from specc.wired import Box, Sort, Wired
 
-NAMES: Final = 1.15
-"""Left of the floors, for the names of readings."""
 SWEEPS: Final = 6
 TRUNK: Final = 0.11
 
@@ -35,7 +34,8 @@ TRUNK: Final = 0.11
 def plan_of(wired: Wired) -> Plan:
     """Lay an architecture out."""
     floors = _ordered(wired)
-    left = EYE + 0.25 + TRUNK * _readings(wired) + NAMES
+    beside = names_width(wired)
+    left = eyes_width(wired) + 0.25 + TRUNK * _readings(wired) + beside
     widths = [_row_width([box_width(box) for box in floor]) for floor in floors]
     mouths_width = _row_width([mouth_width(mouth) for mouth in wired.mouths])
     inner = max([mouths_width, *widths])
@@ -54,7 +54,7 @@ def plan_of(wired: Wired) -> Plan:
         xs |= _ports(mouth.name, "above", names, at, mouth_width(mouth), 0)
         at += mouth_width(mouth) + BETWEEN
     ends = _ends(wired, xs)
-    trunk_x = _trunks(wired, ends, left, left + inner + 0.15)
+    trunk_x = _trunks(wired, ends, left - beside, left + inner + 0.15)
     lanes, counts = _lanes(wired, ends, trunk_x, xs, len(floors) + 1)
     columns = Columns(floors, spots, xs, ends, trunk_x, lanes, counts, (left, inner))
     return raised(wired, columns)
@@ -149,7 +149,7 @@ def _trunks(
     readings = others = 0
     for index, net in enumerate(wired.nets):
         if net.sort is Sort.READING:
-            found[index] = left - NAMES - TRUNK * (_readings(wired) - readings)
+            found[index] = left - TRUNK * (_readings(wired) - readings)
             readings += 1
         elif len({end.gap for end in ends[index]}) > 1:
             found[index] = right + TRUNK * others

@@ -27,6 +27,9 @@ def summary(wired: Wired) -> str:
                 lines += _box(box, wired, sources)
     lines += ["", f"body {wired.body}"]
     lines += [line for mouth in wired.mouths for line in _mouth(mouth)]
+    unread = [eye.name for eye in wired.eyes if not eye.readings]
+    if unread:
+        lines.append(f"  sensors that no node reads: {', '.join(unread)}")
     return "\n".join(lines)
 
 

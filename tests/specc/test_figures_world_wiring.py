@@ -63,6 +63,54 @@ def test_no_two_nets_share_a_piece_of_a_lane(shown: Wired) -> None:
             assert a.y != b.y or a.right < b.left or b.right < a.left
 
 
+def test_every_text_stands_within_its_box() -> None:
+    for name in ("alone/wander", "patrol_hierarchy"):
+        shown = architecture(name)
+        plan = plan_of(shown)
+        figure = draw_wiring(shown)
+        axes = figure.axes[0]
+        frames = [*plan.boxes.values(), *plan.mouths.values(), *plan.eyes.values()]
+        known = {port.name for box in shown.boxes for port in (*box.senses, *box.controls)}
+        known |= {box.clock for box in shown.boxes} | {eye.name for eye in shown.eyes}
+        inked = [text.get_window_extent() for text in axes.texts if text.get_text() in known]
+
+        assert len(inked) > len(known) / 2
+        for box in inked:
+            (left, low), (right, high) = axes.transData.inverted().transform(box)
+            assert any(
+                frame.x <= left
+                and right <= frame.x + frame.width
+                and frame.y <= low
+                and high <= frame.y + frame.height
+                for frame in frames
+            )
+
+
+def test_no_two_texts_of_a_sensor_touch() -> None:
+    figure = draw_wiring(architecture("alone/wander"))
+    inked = {text.get_text(): text.get_window_extent() for text in figure.axes[0].texts}
+
+    for name, said in (("odom", "odometry, unread"), ("gyro", "turn"), ("beacon", "sight, unread")):
+        assert inked[name].x1 < inked[said].x0
+
+
+def test_sensors_that_nobody_reads_are_told() -> None:
+    shown = architecture("alone/wander")
+    unread = ["ahead", "beacon", "lamp", "bumper", "odom"]
+
+    assert [eye.name for eye in shown.eyes if not eye.readings] == unread
+    assert f"sensors that no node reads: {', '.join(unread)}" in summary(shown)
+    assert set(plan_of(shown).eyes) == {eye.name for eye in shown.eyes}
+
+
+@pytest.mark.parametrize("name", ["alone/wander", "tidy_dynamics", "patrol_hierarchy"])
+def test_no_reading_leaves_its_sensor_upon_the_lane_of_another(name: str) -> None:
+    plan = plan_of(architecture(name))
+
+    for _, y in plan.exits.values():
+        assert all(abs(y - run.y) > 0.04 for run in plan.runs)
+
+
 def test_higher_levels_stand_above_what_they_control() -> None:
     plan = plan_of(architecture("thesis_3_3"))
 
