@@ -4,7 +4,7 @@ import itertools
 from dataclasses import replace
 from typing import Final, TypeAlias
 
-from compiler.architecture.exclusion.firmness import doubt_of
+from compiler.architecture.exclusion.firmness import doubt_of, is_number
 from compiler.architecture.exclusion.question import (
     Actor,
     Decider,
@@ -44,16 +44,21 @@ def question_of(wiring: Wiring, first: int, second: int) -> Question:
     deciders = [_decider(wiring, place) for place in used]
     read = sorted({e.signal for one in deciders for e in one.entries if e.signal >= 0})
     signals = _signals(wiring)
-    # Both act: so has decided who alone can fulfil one of their needs.
-    given = {need[0][0] for many in needs[:2] for need in many if len({d for d, _ in need}) == 1}
+    # Where both act, what they need holds, and who alone can fulfil a need has decided.
     shared = {need for many in needs[:2] for need in many}
+    given = {need[0][0] for need in shared if len({d for d, _ in need}) == 1}
+    doubts = [doubt_of(wiring, many, set()) for many in needs[:2]]
+    doubts += [
+        doubt_of(wiring, tuple(need for need in many if need not in shared), given)
+        for many in needs[2:]
+    ]
     actors = [
         Actor(
             wiring.nodes[place].name,
-            tuple(tuple((used.index(d), o) for d, o in n) for n in many),
-            doubt_of(wiring, tuple(n for n in many if n not in shared), given) if i > 1 else "",
+            tuple(tuple((used.index(d), o) for d, o in need) for need in many),
+            doubt,
         )
-        for i, (place, many) in enumerate(zip(who, needs, strict=True))
+        for place, many, doubt in zip(who, needs, doubts, strict=True)
     ]
     return Question(
         signals=tuple(signals[place] for place in read),
@@ -167,7 +172,7 @@ def _entry(wiring: Wiring, place: int, part: Part) -> Entry:
     if wire.signal < 0:
         values = tuple(min(max(v, part.low), part.high) for v in (wire.value, *sets))
         return Entry(part.name, part.unit, part.low, part.high, values=values, labels=labels)
-    if sets:
+    if _may_latch_nothing(wiring, place, wire):
         return free
     is_angle = not isinstance(part, Control) and part.kind is Kind.PERIODIC
     return Entry(
@@ -179,7 +184,20 @@ def _entry(wiring: Wiring, place: int, part: Part) -> Entry:
         scale=wire.scale,
         limit=_limit(wire, is_angle=is_angle),
         labels=labels,
+        sets=tuple(dict.fromkeys(sets)),
     )
+
+
+def _may_latch_nothing(wiring: Wiring, place: int, wire: Input) -> bool:
+    """Whether rules may remember what was no number, of which the lowest value is read.
+
+    The arbiter does not decide by that; but a rule that began to hold there may go on.
+    """
+    arbiter = wiring.nodes[place].arbiter
+    if arbiter < 0 or is_number(wiring, wire.signal):
+        return False
+    rules = wiring.arbiters[arbiter].rules
+    return any(rule.until is not None or rule.lasts > 0.0 for rule in rules)
 
 
 def _limit(wire: Input, *, is_angle: bool) -> Limit:

@@ -3,9 +3,14 @@
 Every number is named by what it is and by when: `s2@5` is signal 2 as it was last told at version
 5, so that two deciders that see the same version share one name. What a node keeps by itself, and
 which rules were holding before, are names of one decider's sample: `e0.1@3`, `h0.1@3`.
+
+A choice may set what is wired to a signal. At each tick the node then has either the reading, whose
+domain may keep it from acting, or one of the numbers that choices set: `c0.1@3` says which, 0 for
+the reading. It is free, whatever the arbiters choose, so all that can happen is among the cases,
+for nodes that act and for a combined behavior that does not; what is proved of all of them holds.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias, final
 
@@ -32,6 +37,19 @@ from spec_schema.expressions.tree import Apply, Expr, Name, Number
 FLAG: Final = Variable(0.0, 1.0, (0.0, 1.0))
 SHORT: Final = 1.0 - 1e-9
 """A hair less than `lasts`, as in `runtime.arbitration.rules`."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """What a decider's entries were at a tick, by name.
+
+    readings: of the signal, or own value, of each entry. settings: what a choice had set.
+    """
+
+    readings: Mapping[str, float]
+    settings: Mapping[str, float]
+
 
 Version: TypeAlias = Callable[[int], int]
 """The version of a signal, by its place, that a sample sees."""
@@ -66,10 +84,25 @@ class Sampled:
             for i, entry in enumerate(self.decider.entries)
             if len(entry.values) != 1
         }
+        for i, entry in enumerate(self.decider.entries):
+            if entry.sets:
+                ways = tuple(map(float, range(len(entry.sets) + 1)))
+                found[self._way(i)] = Variable(ways[0], ways[-1], ways)
         for i, rule in enumerate(self.decider.rules):
             if remembers(rule, self.decider):
                 found |= {self._flag("h", i): FLAG, self._flag("r", i): FLAG}
         return found
+
+    def taken(self, values: Mapping[str, float]) -> Taken:
+        """What its entries are where names have these values."""
+        readings, settings = {}, {}
+        for i, entry in enumerate(self.decider.entries):
+            way = round(values.get(self._way(i), 0.0))
+            if way > 0:
+                settings[entry.name] = entry.sets[way - 1]
+            elif self.name_of(i) in values:
+                readings[entry.name] = values[self.name_of(i)]
+        return Taken(readings, settings)
 
     def outcome(self, outcome: int) -> Formula:
         """Where an outcome holds, whatever rules held before."""
@@ -120,6 +153,13 @@ class Sampled:
     def _entry(self, place: int, entry: Entry) -> Expr:
         if len(entry.values) == 1:
             return Number(entry.values[0])
+        found = self._reading(place, entry)
+        for way, value in enumerate(entry.sets, start=1):
+            number = Number(min(max(value, entry.low), entry.high))
+            found = Apply("where", (self._is_way(place, way), number, found))
+        return found
+
+    def _reading(self, place: int, entry: Entry) -> Expr:
         raw = self._raw(place, entry)
         if entry.signal < 0 or not self._leaves(entry):
             return raw
@@ -142,14 +182,31 @@ class Sampled:
         return not (entry.low <= ends[0] and ends[1] <= entry.high)
 
     def inside(self) -> Formula:
-        """Where no reading outside its domain keeps the node from acting, or deciding."""
-        parts: list[Formula] = []
-        for i, entry in enumerate(self.decider.entries):
-            if entry.signal >= 0 and entry.limit is Limit.INHIBITS and self._leaves(entry):
-                raw = self._raw(i, entry)
-                parts.append(compared(raw, Number(entry.low), EQUAL | MORE))
-                parts.append(compared(raw, Number(entry.high), EQUAL | LESS))
+        """Where nothing outside its domain keeps the node from acting, or deciding."""
+        return both(
+            either((self._is_read_inside(i, entry), *self._are_set_inside(i, entry)))
+            for i, entry in enumerate(self.decider.entries)
+            if entry.signal >= 0 and entry.limit is Limit.INHIBITS
+        )
+
+    def _is_read_inside(self, place: int, entry: Entry) -> Formula:
+        raw = self._raw(place, entry)
+        parts = [truth(self._is_way(place, 0))] if entry.sets else []
+        if self._leaves(entry):
+            parts.append(compared(raw, Number(entry.low), EQUAL | MORE))
+            parts.append(compared(raw, Number(entry.high), EQUAL | LESS))
         return both(parts)
+
+    def _are_set_inside(self, place: int, entry: Entry) -> Iterator[Formula]:
+        for way, value in enumerate(entry.sets, start=1):
+            if entry.low <= value <= entry.high:
+                yield truth(self._is_way(place, way))
+
+    def _is_way(self, place: int, way: int) -> Expr:
+        return Apply("eq", (Name(self._way(place)), Number(float(way))))
+
+    def _way(self, entry: int) -> str:
+        return f"c{self.place}.{entry}@{self.stamp}"
 
     def _flag(self, letter: str, rule: int) -> str:
         return f"{letter}{self.place}.{rule}@{self.stamp}"

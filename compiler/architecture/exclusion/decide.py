@@ -13,10 +13,11 @@ from typing import Final, TypeAlias, final
 
 from compiler.architecture.exclusion.answer import Answer, Proof, Undecided, Witness
 from compiler.architecture.exclusion.conditions import Sampled, has_memory
+from compiler.architecture.exclusion.course import Reached
 from compiler.architecture.exclusion.formula import Formula, both, denied, either, holds
 from compiler.architecture.exclusion.overlap import Instant, Timing, instants, timing_of
 from compiler.architecture.exclusion.question import Actor, How, Outcome, Question
-from compiler.architecture.exclusion.reach import Reached, reached
+from compiler.architecture.exclusion.reach import reached
 from compiler.architecture.exclusion.search import BUDGET, Found, Open, Variable, solve
 from compiler.architecture.exclusion.witness import Decision, is_plain, moments, told
 from spec_schema.wording import listed, number
@@ -220,19 +221,15 @@ class _Case:
             *(self._decision(outcome, found) for outcome in sorted(self._decided(found))),
             *(self._decision(outcome, found, is_denied=True) for outcome in self._denied(found)),
         ]
-        ticks = [(one.sampled, one.decider, one.values) for one in decisions]
+        ticks = [(one.sampled, one.decider, one.taken) for one in decisions]
         run = moments(self.question, self.timing, ticks)
         return told(self.question, self.timing, self.instant.at, decisions, run)
 
     def _decision(self, outcome: Outcome, found: Found, *, is_denied: bool = False) -> Decision:
         sampled = self.sampled(outcome[0])
         assert sampled is not None, "what is decided was sampled"
-        values = {
-            entry.name: found.values[sampled.name_of(i)]
-            for i, entry in enumerate(sampled.decider.entries)
-            if sampled.name_of(i) in found.values
-        }
-        return Decision(*outcome, sampled.stamp, values, is_denied=is_denied)
+        taken = sampled.taken(found.values)
+        return Decision(*outcome, sampled.stamp, taken, is_denied=is_denied)
 
     def _denied(self, found: Found) -> Iterator[Outcome]:
         """Of each combined behavior the outcomes of a need of which none holds."""

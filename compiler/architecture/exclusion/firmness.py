@@ -14,7 +14,7 @@ from compiler.architecture.exclusion.ranges import Box, ends_of, rates_over
 from compiler.architecture.exclusion.wiring import WHAT, Wiring
 from compiler.architecture.signals import box_of
 from runtime.arbiter import Paradigm
-from runtime.architecture import Node, Outside
+from runtime.architecture import Node
 from runtime.program import Program, Role
 
 
@@ -59,14 +59,9 @@ def is_number(wiring: Wiring, signal: int) -> bool:
 def _of_wires(wiring: Wiring, place: int) -> Iterator[str]:
     """What of the readings may keep a node from acting, and stands in no condition."""
     node = wiring.nodes[place]
-    is_set = {(s.node, s.entry) for n in wiring.nodes for c in n.choices for s in c.sets}
     for wire in node.inputs:
-        if wire.signal < 0:
-            continue
-        name = wiring.board[wire.signal].name
-        if wire.outside is Outside.INHIBIT and (place, wire.entry) in is_set:
-            yield f"{node.name}'s '{wire.entry}' keeps it from acting where {name} is outside"
-        if not is_number(wiring, wire.signal):
+        if wire.signal >= 0 and not is_number(wiring, wire.signal):
+            name = wiring.board[wire.signal].name
             yield f"{node.name} reads {name}, which may be no number"
 
 

@@ -31,10 +31,10 @@ def decided(decider: Decider, memory: Memory, row: tuple[bool, ...]) -> tuple[Me
         _held(decider, i, age, when=row[2 * i + 1], until=row[2 * i + 2])
         for i, age in enumerate(memory)
     )
-    return after, outcomes_of(decider, after, row)
+    return after, _outcomes(decider, after, row)
 
 
-def outcomes_of(decider: Decider, memory: Memory, row: tuple[bool, ...]) -> int:
+def _outcomes(decider: Decider, memory: Memory, row: tuple[bool, ...]) -> int:
     """The outcomes that hold, as bits, where rules remember `memory` and conditions are `row`."""
     if not row[0]:
         return 0

@@ -51,7 +51,7 @@ class Entry:
 
     signal: scale times this signal of the question, limited to low..high. Where it is -1, one of
     `values`; and where these are none, anything from low to high (a node's own state), or one of
-    `labels` where it is discrete.
+    `labels` where it is discrete. sets: what choices may set it to, in the place of the signal.
     """
 
     name: str
@@ -63,6 +63,7 @@ class Entry:
     limit: Limit = Limit.CLIPS
     values: tuple[float, ...] = ()
     labels: tuple[str, ...] = ()
+    sets: tuple[float, ...] = ()
 
 
 @final
@@ -112,7 +113,8 @@ Outcome: TypeAlias = tuple[int, int]
 class Actor:
     """A node that may act: where of each of its `needs` at least one outcome holds.
 
-    doubt: of a combined behavior, why it may not act even there; empty where it surely does.
+    doubt: why it may not act even there; empty where it surely does. Of a combined behavior: where
+    `first` and `second` would both act.
     """
 
     name: str

@@ -6,8 +6,9 @@ from typing import final
 
 from compiler.architecture.codes import tree_of
 from compiler.architecture.exclusion.answer import Moment, Reading, Sample, Witness
+from compiler.architecture.exclusion.conditions import Taken
 from compiler.architecture.exclusion.overlap import Timing
-from compiler.architecture.exclusion.question import Decider, Entry, How, Question
+from compiler.architecture.exclusion.question import Decider, Entry, How, Limit, Question
 from compiler.architecture.exclusion.search import round_between
 from runtime.code import Code
 from spec_schema.expressions.rewrite import names_in
@@ -19,15 +20,15 @@ from spec_schema.wording import listed, number
 class Decision:
     """What a decider decided at a tick: the outcome that counts, and what its entries were.
 
-    values: of the signal, or own value, of each entry, by the entry's name. begins: it is where a
-    rule began to hold, which holds on. is_denied: it is that the outcome does not hold, so that a
-    combined behavior does not act in the place of both.
+    taken: what its entries were. begins: it is where a rule began to hold, which holds on.
+    is_denied: it is that the outcome does not hold, so that a combined behavior does not act in the
+    place of both.
     """
 
     decider: int
     outcome: int
     sampled: int
-    values: Mapping[str, float]
+    taken: Taken
     begins: bool = False
     is_denied: bool = False
 
@@ -57,18 +58,18 @@ def told(
 
 
 def moments(
-    question: Question, timing: Timing, ticks: Iterable[tuple[int, int, Mapping[str, float]]]
+    question: Question, timing: Timing, ticks: Iterable[tuple[int, int, Taken]]
 ) -> tuple[Moment, ...]:
     """A run of the signals: each has, from a tick on, the value that a decider sampled there.
 
-    ticks: instant, decider, values by the entry's name.
+    ticks: instant, decider, and what it took.
     """
     now = [round_between(s.low, s.high, s.unit.scale) for s in question.signals]
     for i, signal in enumerate(question.signals):
         now[i] = signal.low if signal.values else now[i]
     by_time: dict[int, list[tuple[int, Mapping[str, float]]]] = {0: []}
-    for time, decider, values in ticks:
-        by_time.setdefault(time, []).append((decider, values))
+    for time, decider, taken in ticks:
+        by_time.setdefault(time, []).append((decider, taken.readings))
     found = []
     for time in sorted(by_time):
         for decider, values in by_time[time]:
@@ -91,8 +92,8 @@ def _sample(
             continue
         used = names_used(decider, one.outcome)
         for entry in decider.entries:
-            if entry.name in used and entry.name in one.values and entry.signal >= 0:
-                reading = _reading(question, entry, one.values[entry.name])
+            if entry.name in used and entry.name in one.taken.readings and entry.signal >= 0:
+                reading = _reading(question, entry, one.taken.readings[entry.name])
                 readings[reading.name] = reading
         effects.append(_effect(timing, at, one, _all_of(one, decisions), decider))
     return Sample(timing.seconds(time), tuple(readings.values()), tuple(dict.fromkeys(effects)))
@@ -163,6 +164,9 @@ def names_used(decider: Decider, outcome: int) -> frozenset[str]:
 
 def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
     """What nobody outside decides, and so may never be."""
+    for actor in (question.first, question.second):
+        if actor.doubt:
+            yield f"{actor.name} can act then ({actor.doubt})"
     for one in decisions:
         decider = question.deciders[one.decider]
         if decider.how is How.ONE:
@@ -170,14 +174,32 @@ def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
             yield f"{decider.name} is ever {'not ' if one.is_denied else ''}in {mode}"
         used = names_used(decider, one.outcome)
         for entry in decider.entries:
-            if entry.name not in used or entry.name not in one.values:
-                continue
-            value = one.values[entry.name]
-            if entry.signal >= 0 and question.signals[entry.signal].told:
-                yield f"{_reading(question, entry, value).text} at times"
-            elif entry.signal < 0 and len(entry.values) != 1:
-                label = entry.labels[round(value)] if entry.labels else ""
-                yield Reading(f"{decider.name}'s {entry.name}", value, entry.unit, label).text
+            if entry.name in used or entry.limit is Limit.INHIBITS:
+                yield from _assumed_of_setting(decider, entry, one.taken)
+            if entry.name in used and entry.name in one.taken.readings:
+                yield from _assumed_of_reading(question, decider, entry, one.taken)
+
+
+def _assumed_of_setting(decider: Decider, entry: Entry, taken: Taken) -> Iterable[str]:
+    """Whether a choice sets it then, where one may."""
+    name = f"{decider.name}'s {entry.name}"
+    if entry.name in taken.settings:
+        value = taken.settings[entry.name]
+        yield f"a choice sets {Reading(name, value, entry.unit).text.replace(' is ', ' to ', 1)}"
+    elif entry.sets:
+        yield f"no choice sets {name} then"
+
+
+def _assumed_of_reading(
+    question: Question, decider: Decider, entry: Entry, taken: Taken
+) -> Iterable[str]:
+    """What a node tells, or keeps by itself."""
+    value = taken.readings[entry.name]
+    if entry.signal >= 0 and question.signals[entry.signal].told:
+        yield f"{_reading(question, entry, value).text} at times"
+    elif entry.signal < 0 and len(entry.values) != 1:
+        label = entry.labels[round(value)] if entry.labels else ""
+        yield Reading(f"{decider.name}'s {entry.name}", value, entry.unit, label).text
 
 
 def _help(question: Question, decisions: list[Decision]) -> str:

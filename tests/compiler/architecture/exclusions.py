@@ -11,9 +11,10 @@ from compiler.architecture.exclusion.ask import question_of
 from compiler.architecture.exclusion.question import Question
 from compiler.architecture.exclusion.wiring import Wiring
 from runtime.arbiter import Arbiter, Paradigm, Read, Rule
-from runtime.architecture import Architecture, Outside
+from runtime.architecture import Architecture, Outside, Way
 from runtime.code import Code
 from runtime.program import Kind, Program, Role
+from runtime.scheduler.observer import What
 from runtime.scheduler.scheduler import Scheduler
 from tests.runtime.behaviors import ONE, control, formula_program, state
 from tests.runtime.scheduler.plane import (
@@ -21,6 +22,7 @@ from tests.runtime.scheduler.plane import (
     SOURCE,
     STEP,
     N,
+    Noted,
     Plain,
     Plane,
     architecture,
@@ -30,6 +32,7 @@ from tests.runtime.scheduler.plane import (
 TOP = 2.0
 GRID = tuple(0.25 * i for i in range(9))
 SIGNALS = ("a.r", "b.r")
+EXCLUSIVE = {"x": Way.EXCLUSIVE}
 
 
 def behavior() -> Program:
@@ -98,23 +101,31 @@ class Case:
 
     def both_act(self, read: Mapping[int, Sequence[float]], steps: int) -> list[int]:
         """The instants at which both act, where sensor i reads read[i][n] in its n-th sample."""
+        return self.run(read, steps)[0]
+
+    def run(self, read: Mapping[int, Sequence[float]], steps: int) -> tuple[list[int], list[int]]:
+        """The instants at which both act, and at which the run tells that a conflict begins."""
 
         def outside(_robot: int, sensor: int, time: float) -> list[float]:
             sample = round(time / STEP) // self.sensors[sensor][0]
             return [read[sensor][min(sample, len(read[sensor]) - 1)]]
 
-        plane = Plane(outside=outside)
-        scheduler = Scheduler(self.scenario(), plane, Plain(plane, self.sensors))
+        plane, noted = Plane(outside=outside), Noted()
+        sensors = Plain(plane, self.sensors)
+        scheduler = Scheduler(self.scenario(), plane, sensors, allow_code=True, observer=noted)
         found = []
         for instant in range(steps):
             scheduler.step()
             acts = scheduler.agents[0].acting.acts
             if acts[self.first] and acts[self.second]:
                 found.append(instant)
-        return found
+        return found, [i for i, event in noted.events if event.what is What.CONFLICT]
 
     def replayed(self, witness: Witness) -> bool:
-        """Whether both act where the witness says so, after the inputs that it tells."""
+        """Whether both act where the witness says so, after the inputs that it tells.
+
+        A conflict on their channel is told then, or was told before and goes on.
+        """
         last = round(witness.at / STEP)
         read = {
             sensor: [
@@ -122,7 +133,9 @@ class Case:
             ]
             for sensor, (name, (rate, late)) in enumerate(zip(SIGNALS, self.sensors, strict=True))
         }
-        return last in self.both_act(read, last + 1)
+        both, conflicts = self.run(read, last + 1)
+        assert conflicts == [i for i in both if i - 1 not in both]
+        return last in both
 
     def _value(self, witness: Witness, name: str, ends: int) -> float:
         """What a signal is until the instant at which its next version can be read."""
@@ -141,9 +154,15 @@ def wired(
 ) -> Case:
     """A case of nodes written by hand."""
     places = [node.name for node in nodes]
+    nodes = [_on_channel(node) if node.name in {first, second} else node for node in nodes]
     limits = dict.fromkeys(SIGNALS, (0.0, TOP))
-    made = architecture(nodes, sensors={"a": ("r",), "b": ("r",)}, signals=limits)
+    made = architecture(nodes, sensors={"a": ("r",), "b": ("r",)}, signals=limits, ways=EXCLUSIVE)
     return Case(made, places.index(first), places.index(second), sensors)
+
+
+def _on_channel(node: N) -> N:
+    """The node, which reaches channel x if it reached none."""
+    return node if node.commands else replace(node, commands={"x": ("y", "rate")})
 
 
 def acting(name: str, when: str | None = None, **more: object) -> N:

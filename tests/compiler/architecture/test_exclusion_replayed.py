@@ -3,20 +3,27 @@
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
-from compiler.architecture.exclusion.answer import Proof, Witness
 from compiler.architecture.exclusion.decide import decide
-from tests.compiler.architecture.exclusions import Case, cases, random_readings
+from tests.compiler.architecture.at_large import cases_at_large
+from tests.compiler.architecture.exclusion_law import fate_of
+from tests.compiler.architecture.exclusions import Case, cases
+
+seeds = st.integers(0, 2**32 - 4)
+
+
+def _obeys(case: Case, seed: int, steps: int) -> None:
+    answer = decide(case.question)
+    note(repr(answer))
+    fate_of(case, answer, range(seed, seed + 3), steps)
 
 
 @settings(max_examples=40)
-@given(cases(), st.integers(0, 2**32 - 1))
+@given(cases(), seeds)
 def test_an_answer_is_what_the_scheduler_does(case: Case, seed: int) -> None:
-    answer = decide(case.question)
-    note(repr(answer))
+    _obeys(case, seed, 50)
 
-    if isinstance(answer, Witness):
-        assert not answer.assumed
-        assert case.replayed(answer)
-    if isinstance(answer, Proof):
-        for further in range(3):
-            assert not case.both_act(random_readings(seed + further, 50), 50)
+
+@settings(max_examples=12)
+@given(cases_at_large(), seeds)
+def test_so_it_is_where_behaviors_combine_and_readings_inhibit(case: Case, seed: int) -> None:
+    _obeys(case, seed, 30)
