@@ -6,6 +6,7 @@ to keep; nothing else uses it, and tests compare each with the method that is pr
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, Final, final
 
 import numpy as np
@@ -13,7 +14,9 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.batch import ArbiterFields, BodyFields
 
-from runtime.arrays import Array
+from runtime.arrays import Array, Integers
+from runtime.world.kernels import felt_mass
+from runtime.world.kernels.cache import address_for_c
 
 C: Final[Any] = lib
 """Chipmunk's functions; they have no types."""
@@ -46,6 +49,62 @@ def finder(body: pymunk.Body) -> Callable[[], tuple[float, float, float]]:
         return at.x, at.y, heading(raw)
 
     return find
+
+
+def feel_evenly(body: pymunk.Body) -> None:
+    """Let the feet of a body, its only joints, feel the same mass in all directions.
+
+    Raises:
+        RuntimeError: Chipmunk's structures hold things elsewhere than this relies on.
+    """
+    C.cpBodySetVelocityUpdateFunc(body._body, _feeling())  # noqa: SLF001 (see above)
+
+
+@cache
+def _feeling() -> Any:
+    """The compiled function, once it is sure that it writes where it should."""
+    if not _is_laid_out_as_known():
+        raise RuntimeError(
+            f"pymunk {pymunk.version} keeps bodies and joints in memory otherwise than the physics "
+            "of worlds relies on; install pymunk 7.3.1"
+        )
+    address = address_for_c(felt_mass.feel_evenly, felt_mass.SIGNATURE)
+    return ffi.cast("cpBodyVelocityFunc", address)
+
+
+def _is_laid_out_as_known() -> bool:
+    """Whether a body with two joints is in memory as `felt_mass` says; nothing is written."""
+    mass, moment, (x, y) = 3.0, 7.0, (0.3, 0.4)
+    space, body = pymunk.Space(), pymunk.Body(mass, moment)
+    before, foot = (
+        pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), at) for at in ((-0.5, 0.2), (x, y))
+    )
+    space.add(body, before, foot)
+    space.step(1.0)
+    other, own = space.static_body._body, body._body  # noqa: SLF001 (see above)
+    first, second = before._constraint, foot._constraint  # noqa: SLF001
+    ours, joint = _memory(own, felt_mass.JOINTS + 1), _memory(second, felt_mass.FELT + 4)
+    links = (
+        (ours[1][felt_mass.JOINTS], second),
+        (joint[1][felt_mass.OTHER], other),
+        (joint[1][felt_mass.OWN], own),
+        (joint[1][felt_mass.NEXT], first),
+    )
+    if any(word != int(ffi.cast("intptr_t", at)) for word, at in links):
+        return False
+    felt = np.linalg.inv(np.eye(2) / mass + np.outer((-y, x), (-y, x)) / moment)
+    found = (ours[0][felt_mass.INVERSE_MASS], ours[0][felt_mass.INVERSE_MOMENT])
+    return bool(
+        np.allclose(found, (1.0 / mass, 1.0 / moment))
+        and np.allclose(joint[0][felt_mass.ARM :][:2], (x, y))
+        and np.allclose(joint[0][felt_mass.FELT :], felt.ravel())
+    )
+
+
+def _memory(at: Any, words: int) -> tuple[Array, Integers]:
+    """So many words of 8 bytes, as real numbers and as whole ones."""
+    copied = bytes(ffi.buffer(ffi.cast("char *", at), 8 * words))
+    return np.frombuffer(copied, dtype=np.float64), np.frombuffer(copied, dtype=np.int64)
 
 
 @final

@@ -14,6 +14,7 @@ import numpy as np
 import pymunk
 
 from runtime.arrays import Array, Integers
+from runtime.world.chipmunk import feel_evenly
 from runtime.world.footprint import Spread, points_of
 from runtime.world.model import Shape
 
@@ -22,7 +23,6 @@ FEET: Final = (2, 2)
 """Feet along and across a footprint."""
 CELLS: Final = 24
 ROUNDS: Final = 100
-DIRECTIONS: Final = 24
 EVEN: Final = 1e-6
 """The relative difference of widths below which a footprint has no longer axis."""
 
@@ -30,10 +30,7 @@ EVEN: Final = 1e-6
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Feet:
-    """Where a thing stands: places (k, 2) in its own frame, and shares (k,) of its weight.
-
-    The shares are those that friction feels; together they are somewhat more than one.
-    """
+    """Where a thing stands: places (k, 2) in its own frame, and shares (k,) of its weight."""
 
     places: Array
     shares: Array
@@ -61,30 +58,7 @@ def feet_of(shape: Shape, spread: Spread, grid: tuple[int, int] = FEET) -> Feet:
     centres = centres - shares @ centres
     arm = float(shares @ np.hypot(*centres.T))
     even = centres * (spread.arm / arm if arm > 0.0 else 1.0)
-    grip = _grip(even, shares, spread.gyration)
-    return Feet(even * grip + np.array([spread.x, spread.y]), shares / grip)
-
-
-def _grip(places: Array, shares: Array, gyration: float) -> float:
-    """The share of the friction with which feet hold a motion without turning.
-
-    The physics lets the force of a foot point against its velocity as weighed by the mass that is
-    felt there, which is less across the line to the centre of mass, where a force turns the thing
-    as well: m / (1 + r² / gyration). So forces of feet do not all point straight back. Larger
-    forces, nearer to the centre, make good for that, and the mean torque stays as it is.
-    """
-    angles = np.arange(DIRECTIONS) * math.pi / DIRECTIONS
-    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    lengths = np.hypot(*places.T)
-    lines = places / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    grip = 1.0
-    for _ in range(DIRECTIONS):
-        along = ways @ lines.T
-        across = 1.0 - along**2
-        felt = 1.0 / (1.0 + (grip * lengths) ** 2 / gyration)
-        back = (along**2 + across * felt) / np.sqrt(along**2 + across * felt**2)
-        grip = float((back @ shares).mean())
-    return grip
+    return Feet(even + np.array([spread.x, spread.y]), shares)
 
 
 def stand(space: pymunk.Space, body: pymunk.Body, feet: Feet, friction: float) -> None:
@@ -97,6 +71,7 @@ def stand(space: pymunk.Space, body: pymunk.Body, feet: Feet, friction: float) -
         joint.max_bias = 0.0
         joint.max_force = force * share
         space.add(joint)
+    feel_evenly(body)
 
 
 def _nearest(points: Array, centres: Array) -> Integers:

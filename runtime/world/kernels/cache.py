@@ -5,10 +5,11 @@ use: so an edit here leaves the other kernels compiled.
 """
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from runtime.kernels.cache import COMPILER, CONFIG, cache_folder
 
@@ -16,6 +17,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 SOURCES = Path(__file__).parent
+_CALLED_BY_C: list[Any] = []
+"""Machine code that is called by address must outlive its callers."""
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
@@ -23,16 +26,32 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
 
     No fast mathematics and no threads: the same arguments give the same bits.
     """
+    with _kept() as possible:
+        compiled: Callable[P, R] = COMPILER.njit(cache=possible, nogil=True, error_model="numpy")(
+            function
+        )
+    return compiled
+
+
+def address_for_c(function: Callable[..., None], signature: str) -> int:
+    """Compile a function that C calls by its address; its machine code is cached on disk."""
+    with _kept() as possible:
+        compiled = COMPILER.cfunc(signature, cache=possible, error_model="numpy")(function)
+    _CALLED_BY_C.append(compiled)
+    address: int = compiled.address
+    return address
+
+
+@contextmanager
+def _kept() -> Iterator[bool]:
+    """Let numba cache in the folder of these kernels; whether it can."""
     before = CONFIG.CACHE_DIR
     folder = senses_folder()
     CONFIG.CACHE_DIR = str(folder or "")
     try:
-        compiled: Callable[P, R] = COMPILER.njit(
-            cache=folder is not None, nogil=True, error_model="numpy"
-        )(function)
+        yield folder is not None
     finally:
         CONFIG.CACHE_DIR = before
-    return compiled
 
 
 @cache

@@ -7,7 +7,9 @@ import pymunk
 import pytest
 from pymunk.batch import ArbiterFields, BodyFields
 
+from runtime.world import chipmunk
 from runtime.world.chipmunk import Bodies, Contacts, aimer, compass, finder, stepper
+from runtime.world.kernels import felt_mass
 
 
 def pile(count: int) -> tuple[pymunk.Space, list[pymunk.Body]]:
@@ -97,3 +99,19 @@ def test_contacts_are_those_that_arbiters_tell() -> None:
     assert set(depths.read()) == set(told)
     assert len(depths.whole()) == len(depths.read()) == 3
     assert min(told) == pytest.approx(math.hypot(0.9, 0.1) - 1.0, abs=0.02)
+
+
+def test_where_things_are_in_memory_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert chipmunk._is_laid_out_as_known()
+
+    for name in ("JOINTS", "OWN", "NEXT", "ARM", "FELT", "INVERSE_MASS", "INVERSE_MOMENT"):
+        with monkeypatch.context() as patch:
+            patch.setattr(felt_mass, name, getattr(felt_mass, name) + 1)
+            assert not chipmunk._is_laid_out_as_known()
+
+
+def test_another_layout_of_memory_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(felt_mass, "FELT", felt_mass.FELT + 1)
+
+    with pytest.raises(RuntimeError, match=r"install pymunk 7\.3\.1"):
+        chipmunk._feeling.__wrapped__()

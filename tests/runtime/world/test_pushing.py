@@ -25,19 +25,23 @@ def pose_after_push(offset: float, friction: float) -> tuple[tuple[float, ...], 
     return tuple(poses[0].tolist()), float(poses[1, 0] - start)
 
 
+ROUGH = 0.36, 125
+"""Where the contact sticks, the reference is found by trial, which takes long."""
+
+
 @pytest.mark.parametrize("offset", [0.01, 0.03, 0.05])
-@pytest.mark.parametrize("friction", [0.0, 0.06])
+@pytest.mark.parametrize(("friction", "steps"), [(0.0, 250), (0.06, 250), ROUGH])
 def test_a_pushed_box_ends_where_the_quasi_static_reference_ends(
-    offset: float, friction: float
+    offset: float, friction: float, steps: int
 ) -> None:
     found, gone = pose_after_push(offset, friction)
     corners = box(0.12, 0.2).polygons[0].vertices
     start = (1.0 - 0.06 - 0.12, 1.0 + offset)
-    wanted = pushed(corners, (1.0, 1.0, 0.0), start, 0.12, gone, friction, steps=250)
+    wanted = pushed(corners, (1.0, 1.0, 0.0), start, 0.12, gone, friction, steps)
 
-    assert math.hypot(found[0] - wanted[0], found[1] - wanted[1]) <= 6e-3
-    assert abs(found[2] - wanted[2]) <= math.radians(3.0)
-    assert abs(wanted[2]) > math.radians(10.0)  # there was something to turn
+    assert math.hypot(found[0] - wanted[0], found[1] - wanted[1]) <= 4e-3
+    assert abs(found[2] - wanted[2]) <= math.radians(1.5)
+    assert abs(wanted[2]) > math.radians(9.0)  # there was something to turn
 
 
 def test_the_reference_goes_straight_when_it_is_pushed_in_the_middle() -> None:
