@@ -9,8 +9,8 @@ from typing import Final, NamedTuple, final
 import numpy as np
 
 from runtime.arrays import Array
+from specc.figures.footprints import placed
 from specc.figures.scene import Eye, EyeKind, Said
-from specc.figures.world import placed
 
 FINE: Final = 0.1
 """Radians between two corners of an arc."""

@@ -15,10 +15,11 @@ from rich.text import Text
 
 from runtime.arrays import Array, Integers
 from specc.figures.braille import Canvas
+from specc.figures.footprints import outline, placed
 from specc.figures.pace import Pace
 from specc.figures.quantities import number
 from specc.figures.scene import NOBODY, Scene
-from specc.figures.world import bounds, outline, placed
+from specc.figures.world import bounds
 
 Show: TypeAlias = Callable[[float, Array, Array, Integers], None]
 """Is told a time, poses of things (t, 3) and of robots (r, 3), and who acts (r,)."""

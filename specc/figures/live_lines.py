@@ -9,9 +9,9 @@ from rich.text import Text
 
 from runtime.arrays import Array, Integers
 from specc.figures.live import Show
+from specc.figures.moments import STEPS
 from specc.figures.quantities import degrees, number, seconds
 from specc.figures.scene import NOBODY, Scene
-from specc.figures.trails import STEPS
 
 MOST: Final = 60
 """Lines of a run for each robot, at most."""

@@ -53,8 +53,7 @@ class Palette:
 
 SERIF: Final = MappingProxyType(
     {
-        "font.family": "serif",
-        "font.serif": ["STIXGeneral"],
+        "font.family": ["STIXGeneral", "DejaVu Sans"],  # the latter has marks that STIX lacks
         "mathtext.fontset": "stix",
         "font.size": 10.5,
         "axes.labelsize": 11.5,

@@ -75,7 +75,11 @@ class Glow:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
-    """What stands in a world. arena: (k, 2) the corners; its edges are walls."""
+    """What stands in a world. arena: (k, 2) the corners; its edges are walls.
+
+    glow: the light on the floor through the run. last_glow: as it was at the end, finer. spoken:
+    names of things that a requirement or a behavior speaks of.
+    """
 
     title: str
     arena: Array
@@ -83,6 +87,8 @@ class Scene:
     robots: tuple[Item, ...]
     lamps: tuple[Lamp, ...] = ()
     glow: Glow | None = None
+    last_glow: Glow | None = None
+    spoken: frozenset[str] = frozenset()
     about: str = ""
     seed: int | None = None
 

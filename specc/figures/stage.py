@@ -19,23 +19,14 @@ from PIL import Image
 
 from runtime.arrays import Array, Integers
 from specc.figures.eyes import Glimpse, arcs, glimpses, hits
+from specc.figures.footprints import lamps_at, outline, patch, placed, reach_of
 from specc.figures.legend import Entry, draw_legend, line_entry
 from specc.figures.palettes import Palette
 from specc.figures.paper import axes_at, new_figure, spaced
 from specc.figures.quantities import number
 from specc.figures.scene import NOBODY, Scene, Trails
 from specc.figures.trails import look_of
-from specc.figures.world import (
-    LAMP,
-    bounds,
-    floor,
-    lamps_at,
-    light_image,
-    outline,
-    patch,
-    placed,
-    reach_of,
-)
+from specc.figures.world import LAMP, bounds, floor, light_image
 
 DPI: Final = 80
 LONG: Final = 6.4

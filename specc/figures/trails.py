@@ -1,10 +1,11 @@
-"""Trails of robots on a floor, with marks of time and of trouble.
+"""Trails of robots on a floor, coloured by what had its way; where only one ever acts, by time.
 
-They are coloured by what had its way; where only one ever acts, by time.
+Of a run so long that its trails would black the floor out only the last part is drawn so; what was
+before is thin and faint, and darkest where robots were most often.
 """
 
-import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
@@ -15,9 +16,10 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 
 from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry, Look, line_entry
+from specc.figures.moments import STEPS
 from specc.figures.palettes import Palette
 from specc.figures.quantities import seconds
-from specc.figures.scene import NOBODY, Mark, Scene, Trails
+from specc.figures.scene import NOBODY, Scene, Trails
 
 DOERS: Final = ("#e69f00", "#cc79a7", "#009e73", "#56b4e9", "#d55e00", "#f0e442", "#0072b2")
 """Okabe and Ito's colours for what acts; each goes with a dash pattern."""
@@ -26,13 +28,18 @@ DASHES: Final = (
     "-", (0, (5, 1.2)), (0, (1.4, 1)), (0, (6, 1.2, 1.4, 1.2)), (0, (9, 1.5)), (0, (3, 1)),
     (0, (8, 1, 1.4, 1, 1.4, 1)),
 )  # fmt: skip
-STEPS: Final = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
-"""Seconds between two marks of time."""
-MOST_MARKS: Final = 8
-MARGIN: Final = 2.5e-4
+MARGIN: Final = 4e-4
 """Share of the floor's longer side by which a straight piece may miss what was there."""
-PIECES: Final = 400
-"""Of a way that is coloured by time, at least."""
+SHADES: Final = 100
+"""Colours of a way that is coloured by time."""
+WIDTH: Final = 2.2
+"""Points of the line of a way."""
+CROWDED: Final = 0.22
+"""The share of the floor from which on lines on it are too many to be told apart."""
+CLEAR: Final = 0.1
+"""The share of it that the lines of the last part of such a run take."""
+OFTEN: Final = 0.16
+"""How dark one faint line is; where more lie upon one another it is darker."""
 SHORT: Final = 0.01
 """Metres of a way that are too short to be seen."""
 
@@ -40,6 +47,15 @@ SHORT: Final = 0.01
 def names_of(trails: Trails) -> tuple[str, ...]:
     """Everything that acts, once, in the order of robots."""
     return tuple(dict.fromkeys(name for doers in trails.doers for name in doers))
+
+
+def shares_of(trails: Trails) -> dict[str, float]:
+    """What share of the time each has its way, of all robots together; at last nobody."""
+    shares = dict.fromkeys(names_of(trails), 0.0)
+    for robot, doers in enumerate(trails.doers):
+        for place, name in enumerate(doers):
+            shares[name] += float(np.mean(trails.acting[:, robot] == place)) / len(trails.doers)
+    return shares | {"nobody": float(np.mean(trails.acting == NOBODY))}
 
 
 def pieces(acting: Integers) -> Iterator[tuple[int, int, int]]:
@@ -79,26 +95,94 @@ def thinned(points: Array, margin: float) -> Booleans:
     return kept
 
 
-def draw_trails(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[Entry]:
-    """The ways of all robots; gives the legend's entries."""
+def fresh_since(scene: Scene, trails: Trails, per_metre: float) -> float:
+    """From when on ways are drawn in full: from the beginning, if they don't fill the floor.
+
+    per_metre: points of the paper for a metre.
+    """
+    begun, ended = float(trails.times[0]), float(trails.times[-1])
+    steps = np.hypot(*np.moveaxis(np.diff(trails.robots[:, :, :2], axis=0), 2, 0))
+    inked = float(steps.sum()) * WIDTH / per_metre / area(scene.arena)
+    if inked <= CROWDED:
+        return begun
+    wanted = (ended - begun) * CLEAR / inked
+    return ended - max((step for step in STEPS if step <= wanted), default=STEPS[0])
+
+
+def area(corners: Array) -> float:
+    """Of a polygon (n, 2)."""
+    x, y = corners.T
+    return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+def part_of(trails: Trails, since: float, until: float = np.inf) -> Trails:
+    """The part of a run's ways between two times; what happened on them is kept as it is."""
+    rows = slice(
+        int(np.searchsorted(trails.times, since - 1e-9)),
+        int(np.searchsorted(trails.times, until + 1e-9)),
+    )
+    return replace(
+        trails,
+        times=trails.times[rows],
+        things=trails.things[rows],
+        robots=trails.robots[rows],
+        acting=trails.acting[rows],
+    )
+
+
+def draw_trails(
+    axes: Axes, scene: Scene, trails: Trails, since: float, palette: Palette
+) -> list[Entry]:
+    """The ways of all robots, in full from `since` on; gives the legend's entries."""
     names = names_of(trails)
     margin = MARGIN * float(np.ptp(scene.arena, axis=0).max())
     seen: set[int] = set()
-    told = [tuple(place[:2]) for place in trails.robots[-1].tolist()]
+    entries = []
+    if since > trails.times[0]:
+        entries.append(_older(axes, part_of(trails, trails.times[0], since), margin, palette))
+    fresh = part_of(trails, since)
     for robot in range(len(scene.robots)):
         if is_by_time(trails):
-            _timed(axes, trails, robot, margin, palette)
+            _timed(axes, fresh, robot, margin, palette)
         else:
-            seen |= _trail(axes, trails, robot, names, margin, palette)
-        _times(axes, trails, robot, palette, told)
-    entries = [
-        line_entry(f"{name} acts", linewidth=2.4, **look_of(place, palette))
+            seen |= _trail(axes, fresh, robot, names, margin, palette)
+    entries += [
+        line_entry(acts(name), linewidth=2.4, **look_of(place, palette))
         for place, name in enumerate(names)
         if place in seen
     ]
     if NOBODY in seen:
         entries.append(line_entry("nobody acts", linewidth=1.2, **look_of(NOBODY, palette)))
-    return [*entries, *_troubles(axes, trails, palette)]
+    return entries
+
+
+def _older(axes: Axes, trails: Trails, margin: float, palette: Palette) -> Entry:
+    """Ways of long ago, in pieces, so that they darken where they cross; an image in every file."""
+    rows = max(len(trails.times) // SHADES, 2)
+    ways = []
+    for robot in range(trails.robots.shape[1]):
+        points = trails.robots[:, robot, :2]
+        for first in range(0, len(points) - 1, rows):
+            stretch = points[first : first + rows + 1]
+            ways.append(stretch[thinned(stretch, margin)])
+    axes.add_collection(
+        LineCollection(
+            ways, colors=palette.ink, linewidths=1.0, alpha=OFTEN, zorder=2.0, rasterized=True
+        )
+    )
+    told = f"where it was before, until {seconds(float(trails.times[-1]))}"
+    return line_entry(told, color=palette.ink, alpha=0.4, linewidth=1.2)
+
+
+def acts(name: str) -> str:
+    """That one acts, or several together.
+
+    >>> acts("seek"), acts("mostly seek"), acts("seek + avoid")
+    ('seek acts', 'mostly seek', 'seek + avoid act')
+    """
+    if name.startswith("mostly "):
+        return name
+    return f"{name} act" if " + " in name else f"{name} acts"
 
 
 def is_by_time(trails: Trails) -> bool:
@@ -140,7 +224,7 @@ def _trail(
         ways.setdefault(place, []).append(stretch[thinned(stretch, margin)])
     _ground(axes, [way for stretches in ways.values() for way in stretches], palette)
     for place, stretches in ways.items():
-        width = 1.2 if place == NOBODY else 2.2
+        width = 1.2 if place == NOBODY else WIDTH
         axes.add_collection(
             LineCollection(
                 stretches, linewidths=width, zorder=5.1, **_many(look_of(place, palette))
@@ -150,18 +234,18 @@ def _trail(
 
 
 def _timed(axes: Axes, trails: Trails, robot: int, margin: float, palette: Palette) -> None:
-    """One robot's way, coloured by time."""
+    """One robot's way, coloured by time: a piece for each shade."""
     points, times = trails.robots[:, robot, :2], trails.times
-    kept = thinned(points, margin)
-    kept[:: max(len(points) // PIECES, 1)] = True
-    rows = np.flatnonzero(kept)
-    pieces_of = np.stack([points[rows[:-1]], points[rows[1:]]], axis=1)
-    _ground(axes, [points[rows]], palette)
-    middle = 0.5 * (times[rows[:-1]] + times[rows[1:]])
     span = max(float(times[-1] - times[0]), 1e-9)
-    colors = time_colors(palette)((middle - times[0]) / span)
+    shades = np.minimum((SHADES * (times - times[0]) / span).astype(np.int64), SHADES - 1)
+    ways, colors = [], []
+    for shade, first, last in pieces(shades):
+        stretch = points[first : last + 1]
+        ways.append(stretch[thinned(stretch, margin)])
+        colors.append(time_colors(palette)((shade + 0.5) / SHADES))
+    _ground(axes, ways, palette)
     axes.add_collection(
-        LineCollection(list(pieces_of), colors=colors, linewidths=2.0, capstyle="round", zorder=5.1)
+        LineCollection(ways, colors=colors, linewidths=2.0, capstyle="round", zorder=5.1)
     )
 
 
@@ -179,76 +263,3 @@ def _is_long(way: Array) -> bool:
 def _many(one: Look) -> Look:
     """A look as collections are told it."""
     return {"colors": one["color"], "linestyles": [one["linestyle"]]}
-
-
-def _times(
-    axes: Axes, trails: Trails, robot: int, palette: Palette, told: list[tuple[float, ...]]
-) -> None:
-    """Marks of time along a way; their seconds where nothing is told near by.
-
-    told: where something is told already; what is told here is added to it.
-    """
-    times = trails.times
-    step = time_step(float(times[-1] - times[0]))
-    apart = 0.075 * float(np.diff(axes.get_xlim())[0])
-    first = math.ceil(float(times[0]) / step + 1e-9)
-    for count in range(first, math.ceil(float(times[-1]) / step - 1e-9)):
-        at = int(np.searchsorted(times, count * step - 1e-9))
-        x, y = trails.robots[at, robot, :2].tolist()
-        axes.plot(x, y, "o", ms=3.4, mfc=palette.paper, mec=palette.ink, mew=0.9, zorder=6)
-        if all(abs(x - u) > apart or abs(y - v) > 0.5 * apart for u, v in told):
-            axes.annotate(
-                seconds(count * step), (x, y), (4, 4), textcoords="offset points", fontsize=7,
-                color=palette.ink, zorder=9,
-                bbox={"facecolor": palette.paper, "alpha": 0.7, "pad": 0.6, "edgecolor": "none"},
-            )  # fmt: skip
-            told.append((x, y))
-
-
-def time_step(duration: float) -> float:
-    """Seconds between marks: the least of the usual ones that gives few enough.
-
-    >>> time_step(60.0), time_step(3.0)
-    (10.0, 0.5)
-    """
-    return next((step for step in STEPS if duration / step <= MOST_MARKS), STEPS[-1])
-
-
-def _troubles(axes: Axes, trails: Trails, palette: Palette) -> list[Entry]:
-    """Where robots touched something, and where they were stuck."""
-    entries = []
-    touch: Look = {
-        "marker": "x", "linestyle": "None", "ms": 5.0, "mew": 1.4, "color": palette.alarm,
-        "zorder": 7,
-    }  # fmt: skip
-    stuck: Look = {
-        "marker": "s", "linestyle": "None", "ms": 9.0, "mew": 1.6, "mec": palette.alarm,
-        "mfc": "none", "zorder": 7,
-    }  # fmt: skip
-    for marks, drawn, name in (
-        (trails.contacts, touch, "touched something"),
-        (trails.jams, stuck, "stuck"),
-    ):
-        if marks:
-            kept = _apart(marks)
-            axes.plot([m.x for m in kept], [m.y for m in kept], **drawn)
-            entries.append(line_entry(f"{name} ({len(marks)})", **drawn))
-    for jam in trails.jams:
-        _tell_jam(axes, jam, palette)
-    return entries
-
-
-def _tell_jam(axes: Axes, jam: Mark, palette: Palette) -> None:
-    """How long a robot was stuck, on the side on which there is more room."""
-    is_left = jam.x < float(np.mean(axes.get_xlim()))
-    axes.annotate(
-        f"stuck for {seconds(jam.end - jam.time)}", (jam.x, jam.y), (14 if is_left else -14, -9),
-        textcoords="offset points", fontsize=7, color=palette.alarm, zorder=9, va="top",
-        ha="left" if is_left else "right",
-        bbox={"facecolor": palette.paper, "alpha": 0.7, "pad": 0.6, "edgecolor": "none"},
-    )  # fmt: skip
-
-
-def _apart(marks: tuple[Mark, ...]) -> list[Mark]:
-    """One of all marks that are within a centimetre of one another."""
-    return list({(round(m.x, 2), round(m.y, 2)): m for m in marks}.values())

@@ -1,7 +1,5 @@
 """A world on paper: the floor with its light, walls, things where they were and are, robots."""
 
-import math
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -12,19 +10,30 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize, PowerNorm
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path
+from matplotlib.patches import Patch
 
 from runtime.arrays import Array
-from runtime.world.model import Shape
+from specc.figures.footprints import lamps_at, moved, outline, patch, placed, reach_of
+from specc.figures.labels import Labels
 from specc.figures.legend import Entry, Look, draw_legend, line_entry
+from specc.figures.moments import mark_jams, mark_times, mark_touches
+from specc.figures.names import keep_clear, name_robots_and_lights, name_things
 from specc.figures.palettes import PALETTES, Palette
 from specc.figures.paper import axes_at, heading, new_figure, write_heading
 from specc.figures.quantities import seconds
-from specc.figures.scene import NOBODY, Glow, Scene, Trails
+from specc.figures.scene import Glow, Scene, Trails
 from specc.figures.style import look
 from specc.figures.style_names import Style
-from specc.figures.trails import MARGIN, draw_trails, is_by_time, names_of, thinned, time_colors
+from specc.figures.trails import (
+    MARGIN,
+    draw_trails,
+    fresh_since,
+    is_by_time,
+    part_of,
+    shares_of,
+    thinned,
+    time_colors,
+)
 from verifier.report.wording import percents
 
 LONG: Final = 6.6
@@ -32,10 +41,6 @@ LONG: Final = 6.6
 LEFT: Final = 0.55
 BELOW: Final = 0.5
 RIGHT: Final = 2.2
-CORNERS: Final = 40
-"""Of a circle that is drawn."""
-MOVED: Final = 5e-3
-"""Metres, or a share of a radian: what is less is no move."""
 LAMP: Final = "#f0e442"
 SHARE: Final = 0.005
 """Of the time; who acts less is not told of."""
@@ -63,18 +68,43 @@ def draw_world(scene: Scene, trails: Trails, style: Style = Style.SCREEN) -> Fig
         floor(axes, scene)
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
+        labels = Labels(axes)
+        since = fresh_since(scene, trails, labels.per_metre)
         entries = [*_things(axes, scene, trails, palette), *_robots(axes, scene, trails, palette)]
         entries += _lamps(axes, scene, trails.things[-1], palette)
-        entries += draw_trails(axes, scene, trails, palette)
+        entries += draw_trails(axes, scene, trails, since, palette)
+        entries += _tell(axes, scene, trails, (labels, since), palette)
         corner = ((LEFT + size[0] + 0.2) / width, (foot + size[1]) / figure.get_size_inches()[1])
         draw_legend(figure, entries, corner)
         _light(figure, axes, scene, (LEFT + size[0] + 0.2, foot), palette)
         if is_by_time(trails):
             beside = 1.0 if scene.glow is not None else 0.0
-            _clock(figure, trails, (LEFT + size[0] + 0.2 + beside, foot), palette)
+            _clock(figure, part_of(trails, since), (LEFT + size[0] + 0.2 + beside, foot), palette)
         top = figure.get_size_inches()[1] - 0.08
         write_heading(figure, text, palette, 0.12, top, foot - BELOW)
     return figure
+
+
+def _tell(
+    axes: Axes, scene: Scene, trails: Trails, how: tuple[Labels, float], palette: Palette
+) -> list[Entry]:
+    """Marks of what happened, and all words on the floor, which keep off all that is drawn there.
+
+    how: where words are, and from when on ways are drawn in full.
+    """
+    labels, since = how
+    fresh = part_of(trails, since)
+    keep_clear(labels, scene, trails)
+    for robot in range(len(scene.robots)):
+        labels.spare(fresh.robots[:, robot, :2])
+    stuck, jams = mark_jams(axes, trails, labels, palette)
+    times = mark_times(axes, fresh, labels, palette)
+    touched = mark_touches(axes, trails, since, labels, palette)
+    name_robots_and_lights(labels, scene, trails, palette)
+    name_things(labels, scene, trails, palette)
+    for note in (*times, *jams):
+        labels.put_by(note)
+    return [*touched, *stuck]
 
 
 def bounds(scene: Scene) -> tuple[float, float, float, float]:
@@ -99,24 +129,6 @@ def floor(axes: Axes, scene: Scene) -> None:
     )  # fmt: skip
 
 
-def outline(shape: Shape, corners: int = CORNERS) -> list[Array]:
-    """The parts of a footprint as closed polygons in its own frame."""
-    turn = np.linspace(0.0, math.tau, corners, endpoint=False)
-    circles = [
-        np.column_stack([d.x + d.radius * np.cos(turn), d.y + d.radius * np.sin(turn)])
-        for d in shape.discs
-    ]
-    return [*circles, *(np.array(polygon.vertices) for polygon in shape.polygons)]
-
-
-def placed(points: Array, pose: Array) -> Array:
-    """Points (k, 2) of a frame that stands at `pose` (x, y, heading), in the world."""
-    x, y, heading = pose.tolist()
-    c, s = math.cos(heading), math.sin(heading)
-    there: Array = points @ np.array([[c, s], [-s, c]]) + (x, y)
-    return there
-
-
 def lux_colors(palette: Palette) -> Colormap:
     """From dark to light, of evenly rising lightness (CIE L*): blue to yellow, or greys."""
     if palette.hatches:
@@ -124,35 +136,6 @@ def lux_colors(palette: Palette) -> Colormap:
     if palette.paper == "#ffffff":
         return LinearSegmentedColormap.from_list("lux", ["#9aa3b8", "#d0cfc6", "#fff6c0"])
     return LinearSegmentedColormap.from_list("lux", ["#10151c", "#444950", "#8f8760"])
-
-
-def patch(parts: Sequence[Array], **drawn: object) -> Patch:
-    """One patch from several closed polygons."""
-    vertices = [np.vstack([part, part[:1]]) for part in parts]
-    codes = [[Path.MOVETO, *[Path.LINETO] * (len(part) - 1), Path.CLOSEPOLY] for part in parts]
-    path = Path(np.vstack(vertices), np.concatenate(codes))
-    drawn_patch: Patch = PathPatch(path, **drawn)
-    return drawn_patch
-
-
-def moved(poses: Array) -> bool:
-    """Whether a thing (n, 3) was anywhere else than at its start."""
-    off = np.abs(poses - poses[0])
-    return bool((off > MOVED).any())
-
-
-def reach_of(parts: Sequence[Array]) -> float:
-    """How far a footprint reaches from its origin."""
-    return max(float(np.hypot(part[:, 0], part[:, 1]).max()) for part in parts)
-
-
-def lamps_at(scene: Scene, things: Array) -> Array:
-    """Where lights are (k, 2), the things being at poses (t, 3)."""
-    at = [
-        placed(np.array([[lamp.x, lamp.y]]), things[lamp.on] if lamp.on >= 0 else np.zeros(3))[0]
-        for lamp in scene.lamps
-    ]
-    return np.array(at).reshape(-1, 2)
 
 
 def _things(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[Entry]:
@@ -175,7 +158,7 @@ def _things(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
         (loose, light, "thing, can be pushed", 3.1),
         (fixed, solid, "thing, fixed", 3.1),
     )
-    entries = []
+    entries = [line_entry("way of what was pushed", **_pushing(palette))] if starts else []
     for patches, drawn, name, order in kinds:
         if patches:
             axes.add_collection(PatchCollection(patches, **drawn, zorder=order))
@@ -186,7 +169,7 @@ def _things(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
 def _pushed(axes: Axes, way: Array, palette: Palette) -> None:
     """The way of what was pushed, with an arrow where it ends."""
     kept = way[thinned(way, MARGIN * float(np.abs(np.diff(axes.get_xlim())[0])))]
-    axes.plot(kept[:, 0], kept[:, 1], color=palette.ink, lw=0.9, ls=(0, (1, 1.5)), zorder=3.2)
+    axes.plot(kept[:, 0], kept[:, 1], **_pushing(palette), zorder=3.2)
     far = np.flatnonzero(np.hypot(*(kept - kept[-1]).T) > 0.02)
     if len(far):
         (x, y), (to_x, to_y) = kept[far[-1]].tolist(), kept[-1].tolist()
@@ -196,8 +179,12 @@ def _pushed(axes: Axes, way: Array, palette: Palette) -> None:
         )
 
 
+def _pushing(palette: Palette) -> Look:
+    return {"color": palette.ink, "lw": 0.9, "ls": (0, (1, 1.5))}
+
+
 def _robots(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[Entry]:
-    """Robots at their start, faint, and at their end, with where they look and their names."""
+    """Robots at their start, faint, and at their end, with where they look."""
     for index, item in enumerate(scene.robots):
         parts = outline(item.shape)
         reach = reach_of(parts)
@@ -215,12 +202,6 @@ def _robots(axes: Axes, scene: Scene, trails: Trails, palette: Palette) -> list[
             )
             nose = placed(np.array([[0.0, 0.0], [reach, 0.0]]), pose)
             axes.plot(nose[:, 0], nose[:, 1], color=palette.paper, lw=1.4, zorder=5.6, alpha=alpha)
-        x, y, _ = trails.robots[-1, index].tolist()
-        axes.annotate(
-            item.name, (x, y), (0, -9), textcoords="offset points", fontsize=8,
-            ha="center", va="top", fontweight="bold", zorder=9,
-            bbox={"facecolor": palette.paper, "alpha": 0.7, "pad": 0.8, "edgecolor": "none"},
-        )  # fmt: skip
     drawn: Look = {"facecolor": palette.nullcline, "edgecolor": palette.ink, "lw": 1.0}
     return [Entry("robot (faint: its start)", (Patch(**drawn),))]
 
@@ -289,11 +270,7 @@ def _lasted(scene: Scene, trails: Trails) -> str:
     begun, ended = float(trails.times[0]), float(trails.times[-1])
     seed = "" if scene.seed is None else f", seed {scene.seed}"
     lasted = f"{seconds(ended - begun)} of simulated time{seed}"
-    shares = dict.fromkeys(names_of(trails), 0.0)
-    for robot, doers in enumerate(trails.doers):
-        for place, name in enumerate(doers):
-            shares[name] += float(np.mean(trails.acting[:, robot] == place)) / len(trails.doers)
-    shares["nobody"] = float(np.mean(trails.acting == NOBODY))
+    shares = shares_of(trails)
     parts = zip(shares.items(), percents([*shares.values()]), strict=True)
     told = [f"{name} {part}" for (name, share), part in parts if share >= SHARE]
     return f"{lasted}. Acting: {', '.join(told)}" if told else lasted

@@ -6,12 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runtime.arrays import Array
+from specc.figures.footprints import placed
+from specc.figures.moments import time_step
 from specc.figures.palettes import DARK, JOURNAL, SCREEN, Palette
 from specc.figures.scene import NOBODY
 from specc.figures.style import rendered
 from specc.figures.style_names import Style
-from specc.figures.trails import pieces, thinned, time_step
-from specc.figures.world import draw_world, lux_colors, placed
+from specc.figures.trails import pieces, thinned
+from specc.figures.world import draw_world, lux_colors
 from tests.specc.world_scenes import scene, trails
 
 
