@@ -10,6 +10,7 @@ makes one.
 import json
 import re
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,7 @@ from spec_schema.model_walk import keys_at
 from spec_schema.node import plain
 from spec_schema.source import Source
 from spec_schema.yaml_reader import read
+from tests.study import agents
 
 ROOT = Path(__file__).parents[1]
 LANGUAGE = "\n".join(
@@ -188,6 +190,27 @@ def test_the_examples_of_the_python_page_print_what_they_say(
         printed = capsys.readouterr().out.splitlines()
         promised = re.findall(r"  # (.*)$", found["text"], re.MULTILINE)
         assert not promised or printed == promised
+
+
+def test_the_study_of_agents_prints_tables_of_the_form_of_its_page(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(agents, "ProcessPoolExecutor", ThreadPoolExecutor)
+    monkeypatch.setattr(agents, "explored", lambda *_: agents.Report(0.5, 0.0, 40.0, 0.1, 9.0))
+    page = (ROOT / "docs" / "agents.md").read_text(encoding="utf-8")
+
+    printed = list(agents.table(8, 60.0, 1))
+
+    assert form_of(printed) == form_of(page.splitlines())
+    assert [line for line in printed if line.startswith("| world")] == [
+        line for line in page.splitlines() if line.startswith("| world")
+    ]
+    assert "CPU time: 72 s for the walker, 72 s for the cart, 72 s for the deaf cart" in printed
+
+
+def form_of(lines: list[str]) -> list[tuple[str, int]]:
+    """Of each row of a table what it begins with, and how many bars it has."""
+    return [(line.split("|")[1], line.count("|")) for line in lines if line.startswith("|")]
 
 
 def test_every_error_has_an_example() -> None:
