@@ -111,7 +111,8 @@ def _missing(model: type[BaseModel], path: Path) -> Mistake:
 
 def _unknown_word(model: type[BaseModel], path: Path, got: Any) -> Mistake:
     known = tuple(MODELS) if path == ("kind",) else choices_at(model, path)
-    what = _CALLED.get(str(path[-1]), str(path[-1]))
+    is_key = path == ("kind",) or str(path[-1]) in keys_at(model, path[:-1])
+    what = _CALLED.get(str(path[-1]), str(path[-1])) if is_key else "word"
     if not isinstance(got, str):
         return Mistake(
             "S103", f"expected one of {', '.join(known)}, got {described(got)}", "", path
@@ -142,9 +143,17 @@ def _wrong_length(model: type[BaseModel], path: Path, got: Any, context: dict[st
             else (context["max_length"], "at most")
         )
         words = "exactly" if least == most == limit else words
-        message = f"{quoted(str(path[-1]))} takes {words} {limit} (got {len(got)})"
+        message = f"{_called(path)} takes {words} {limit} (got {len(got)})"
         return Mistake("S262", message, _write(model, path), path)
-    return Mistake("S110", f"{quoted(str(path[-1]))} is an empty {what}", _write(model, path), path)
+    return Mistake("S110", f"{_called(path)} is an empty {what}", _write(model, path), path)
+
+
+def _called(path: Path) -> str:
+    """A value by its key; of a list by its number."""
+    last = path[-1]
+    if isinstance(last, str):
+        return quoted(last)
+    return f"number {last + 1} of {_called(path[:-1])}" if path[:-1] else f"number {last + 1}"
 
 
 def _out_of_bounds(
@@ -156,7 +165,9 @@ def _out_of_bounds(
 
 
 def _write(model: type[BaseModel], path: Path, verb: str = "write") -> str:
-    """What to write, by an example; nothing where the models show none."""
+    """What to write, by an example; of a list's item that of the list; nothing without one."""
+    while len(path) > 1 and isinstance(path[-1], int):
+        path = path[:-1]
     example = example_at(model, path)
     if example is None:
         return ""

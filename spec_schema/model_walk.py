@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, RootModel
 from pydantic.fields import FieldInfo
@@ -25,9 +25,11 @@ def example_at(model: type[BaseModel], path: Path) -> object:
 
 def choices_at(model: type[BaseModel], path: Path) -> tuple[str, ...]:
     """The words that may stand at `path`."""
-    owner = _model_at(model, path[:-1])
-    field = _by_key(owner).get(str(path[-1])) if owner else None
-    return get_args(field.annotation) if field else ()
+    annotation: Any = model
+    for step in path:
+        annotation = _step_into(_bare(annotation), step)
+    bare = _bare(annotation)
+    return get_args(bare) if get_origin(bare) is Literal else ()
 
 
 def lengths_at(model: type[BaseModel], path: Path) -> tuple[int | None, int | None]:

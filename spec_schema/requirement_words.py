@@ -12,6 +12,7 @@ WINDOWS: Final = frozenset({"within", "after", "from", "to"})
 KEYWORDS: Final = frozenset({*TEMPORAL, *WINDOWS, "until", "not", "and", "or", "if", "then"})
 LONGEST: Final = 2_000
 """Characters of a sentence."""
+COMPARE: Final = "compare quantities and finite numbers, as in `r.clearance > 5 cm`"
 OTHER_WORDS: Final = {
     "globally": "always",
     "finally": "eventually",
@@ -82,7 +83,9 @@ def words_of(text: str) -> tuple[list[Word], list[Fault]]:
         if kind == "space":
             continue
         if kind == "strange":
-            remedy = {"=": "write == to compare", "&": "write and", "|": "write or"}.get(found, "")
+            remedy = {"=": "write == to compare", "&": "write and", "|": "write or"}.get(
+                found, COMPARE
+            )
             message = f"{quoted(found)} is not part of a requirement"
             faults.append(Fault(start, end, "S370", message, remedy))
         elif kind == "name" and found.casefold() in OTHER_WORDS:

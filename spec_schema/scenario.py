@@ -5,7 +5,7 @@ from typing import Annotated, Literal, TypeAlias, final
 
 from pydantic import Field, Strict
 
-from spec_schema.shapes import PoseText
+from spec_schema.starts import StartText
 from spec_schema.value_types import (
     Identifier,
     Name,
@@ -26,7 +26,7 @@ class RobotSpec(StrictModel):
         description="What controls it: a spec, as a path from this file.",
         examples=["find_light.yaml"],
     )
-    at: PoseText | Literal["random"] = Field(
+    at: StartText = Field(
         default="random",
         description="Where it starts, and its direction; or `random`: anywhere that is free, anew "
         "for each seed.",

@@ -20,6 +20,8 @@ LONGEST = 100
 GREATEST_EXPONENT = 20
 """Of one factor of a unit."""
 
+LIKE_THESE = "units are such as m, cm, s, ms, deg, rad/s, kg, lx or 1"
+
 SIGN = re.compile(r"\s*([*/·⋅])(?!\*)\s*")
 OPEN = re.compile(r"\(\s*")
 CLOSE = re.compile(r"\s*\)")
@@ -125,7 +127,7 @@ def _nearest(name: str) -> str:
     squeezed = re.fullmatch(r"([^\W\d]+)([1-9])", name)
     if squeezed and squeezed.group(1) in table():
         return f"write {squeezed.group(1)}^{squeezed.group(2)}"
-    return did_you_mean(name, table())
+    return did_you_mean(name, table()) or LIKE_THESE
 
 
 def _why_no_multiple(name: str, dimension: Dimension) -> tuple[str, str]:
@@ -139,9 +141,12 @@ def _why_no_multiple(name: str, dimension: Dimension) -> tuple[str, str]:
 def _unread(text: str, start: int, advice: str = "") -> UnitFault:
     rest = text[start:].strip()
     if not rest:
-        return UnitFault(Fault(start - 1, start, "S122", "the unit ends too early", advice))
+        return UnitFault(
+            Fault(start - 1, start, "S122", "the unit ends too early", advice or LIKE_THESE)
+        )
     at = text.index(rest[0], start)
     if not advice and NAME.match(rest):
         advice = "write * for a product, as in kg*m"
+    advice = advice or LIKE_THESE
     message = f"the unit can't be read from '{rest if len(rest) <= 30 else rest[:27] + '...'}'"
     return UnitFault(Fault(at, len(text.rstrip()), "S122", message, advice))

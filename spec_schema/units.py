@@ -13,7 +13,7 @@ from typing import final
 
 from spec_schema.dimension import DIMENSIONLESS, Dimension, describe
 from spec_schema.faults import Fault, UnitFault
-from spec_schema.unit_grammar import read_unit
+from spec_schema.unit_grammar import LIKE_THESE, read_unit
 
 __all__ = [
     "DIMENSIONLESS",
@@ -78,7 +78,8 @@ def parse_quantity(text: str) -> Quantity:
         raise UnitFault(Fault(0, max(1, len(text)), "S124", message, "write it as '0.05 m'"))
     number, written = float(match.group(1)), _short(match.group(1))
     if math.isinf(number):
-        raise UnitFault(Fault(*match.span(1), "S124", f"the number {written} is too large"))
+        message = f"the number {written} is too large"
+        raise UnitFault(Fault(*match.span(1), "S124", message, "write a finite one"))
     if match.end() == len(text):
         advice = f"write {written} without quotes, or add its unit"
         raise UnitFault(Fault(*match.span(1), "S124", f"'{written}' lacks a unit", advice))
@@ -96,15 +97,33 @@ def quantity_in(text: str, wanted: Unit) -> float:
     Raises:
         UnitFault: as `parse_quantity`, and where the quantity is of another dimension.
     """
-    quantity = parse_quantity(text)
+    quantity = _quantity_like(text, wanted)
     unit = quantity.unit
     if unit.dimension != wanted.dimension:
         message = f"{_short(text.strip())} can't be read in {wanted.text}"
-        advice = "write a plain number" if wanted.text == "1" else f"write it in {wanted.text}"
+        advice = _in(wanted)
         told = [_in_si(one) for one in (unit, wanted) if one.text != describe(one.dimension)]
         advice = "; ".join([advice, *([", ".join(told)] if told else [])])
         raise UnitFault(Fault(0, len(text), "S125", message, advice))
     return quantity.value
+
+
+def _quantity_like(text: str, wanted: Unit) -> Quantity:
+    """The quantity; what can't be read as one is asked for in the unit that is wanted."""
+    try:
+        return parse_quantity(text)
+    except UnitFault as error:
+        fault = error.fault
+        if not NUMBER.match(text):
+            example = "0.05" if wanted.text == "1" else f"0.05 {wanted.text}"
+            raise UnitFault(replace(fault, help=f"write it as '{example}'")) from None
+        if fault.help == LIKE_THESE:
+            raise UnitFault(replace(fault, help=_in(wanted))) from None
+        raise
+
+
+def _in(wanted: Unit) -> str:
+    return "write a plain number" if wanted.text == "1" else f"write it in {wanted.text}"
 
 
 def _in_si(unit: Unit) -> str:

@@ -104,7 +104,12 @@ def _number_help(text: str) -> str:
     return "write a number, without quotes"
 
 
-def _quantity(value: object) -> float | str:
+def as_quantity(value: object) -> float | str:
+    """A number or a text, as `Quantity` takes it.
+
+    Raises:
+        PydanticCustomError: it is something else.
+    """
     match value:
         case bool():
             pass
@@ -250,7 +255,7 @@ Number: TypeAlias = Annotated[float, PlainValidator(_number), _schema(type="numb
 """A finite number."""
 
 Quantity: TypeAlias = Annotated[
-    float | str, PlainValidator(_quantity), _schema(type=["number", "string"])
+    float | str, PlainValidator(as_quantity), _schema(type=["number", "string"])
 ]
 """A plain number in the variable's own unit, or a number with its unit as text: `"0.05 m"`."""
 

@@ -7,8 +7,10 @@ from typing import Final
 from spec_schema.expressions.algebra import build
 from spec_schema.expressions.tree import Apply, Expr, Name, Number, Text, fold, same, walk
 from spec_schema.faults import Fault
-from spec_schema.suggest import did_you_mean
+from spec_schema.suggest import did_you_mean, there_are
 
+MOST_NAMED: Final = 8
+"""Of more names none are listed in a help."""
 TIMES: Final = frozenset({"t", "time"})
 NO_CLOCK: Final = (
     "expressions can't read the time; give the behavior a clock of its own, such as a periodic "
@@ -39,7 +41,10 @@ def _unknown(name: str) -> str:
 def _meant(name: str, known: Sequence[str]) -> str:
     if name in TIMES and name not in known:
         return NO_CLOCK
-    return did_you_mean(name, known)
+    meant = did_you_mean(name, known)
+    if meant or len(known) > MOST_NAMED:
+        return meant
+    return there_are(known) if known else "write a number"
 
 
 def substitute(expr: Expr, mapping: Mapping[str, Expr]) -> Expr:

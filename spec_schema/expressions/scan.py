@@ -168,7 +168,7 @@ def _brackets(tokens: list[Token]) -> Iterator[Fault]:
             opened.append(token)
         elif token.text in CLOSING.values():
             if not opened or CLOSING[opened[-1].text] != token.text:
-                yield token.fault(f"'{token.text}' closes nothing")
+                yield token.fault(f"'{token.text}' closes nothing", "remove it, or open a bracket")
             else:
                 opened.pop()
     yield from (t.fault(f"'{t.text}' is never closed", f"add '{CLOSING[t.text]}'") for t in opened)
@@ -187,7 +187,8 @@ def _order(tokens: list[Token]) -> Iterator[Fault]:
         needs_value = _needs_value_after(token, needs_value=needs_value)
         before = token
     if needs_value and before:
-        yield before.fault(f"a value is missing after '{before.text}'")
+        advice = f"write it, or remove '{before.text}'"
+        yield before.fault(f"a value is missing after '{before.text}'", advice)
 
 
 def _missing_value(before: Token | None, token: Token) -> Fault | None:
@@ -197,11 +198,10 @@ def _missing_value(before: Token | None, token: Token) -> Fault | None:
         # `()` is a call without arguments or an empty tuple, `,)` a trailing comma.
         return None
     if before is None or before.text in {*CLOSING, ","}:
-        return token.fault(f"a value is missing before '{token.text}'")
-    return Fault(
-        before.start, token.end, "S133", f"a value is missing between '{before.text}' and "
-        f"'{token.text}'"
-    )  # fmt: skip
+        advice = f"write it, or remove '{token.text}'"
+        return token.fault(f"a value is missing before '{token.text}'", advice)
+    message = f"a value is missing between '{before.text}' and '{token.text}'"
+    return Fault(before.start, token.end, "S133", message, "write it, or remove one of both")
 
 
 def _missing_operator(before: Token | None, token: Token) -> Fault | None:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from spec_schema.unit_grammar import LIKE_THESE
 from spec_schema.unit_names import TABLE, table
 from spec_schema.unit_table import as_text
 from spec_schema.units import (
@@ -102,14 +103,14 @@ def fault_of(text: str) -> tuple[str, str, str, str]:
         ("metters", "metters", "S121", "no unit is named 'metters'", "did you mean 'meters'?"),
         ("m s", "s", "S122", "the unit can't be read from 's'",
          "write * for a product, as in kg*m"),
-        ("m/", "/", "S122", "the unit ends too early", ""),
+        ("m/", "/", "S122", "the unit ends too early", LIKE_THESE),
         ("(m", "m", "S122", "the unit ends too early", "add ')'"),
-        ("m)", ")", "S122", "the unit can't be read from ')'", ""),
-        ("m//s", "/s", "S122", "the unit can't be read from '/s'", ""),
-        ("2*m", "2*m", "S122", "the unit can't be read from '2*m'", ""),
+        ("m)", ")", "S122", "the unit can't be read from ')'", LIKE_THESE),
+        ("m//s", "/s", "S122", "the unit can't be read from '/s'", LIKE_THESE),
+        ("2*m", "2*m", "S122", "the unit can't be read from '2*m'", LIKE_THESE),
         ("", "", "S122", "the unit is empty", 'write "1" for a number without unit'),
         ("m^99", "^99", "S122", "an exponent is at most 20 (got 99)", ""),
-        ("m^(1/0)", "^(1/0)", "S122", "the unit can't be read from '^(1/0)'", ""),
+        ("m^(1/0)", "^(1/0)", "S122", "the unit can't be read from '^(1/0)'", LIKE_THESE),
         ("degC", "degC", "S123", "'degC' is no multiple of an SI unit: its zero lies elsewhere",
          "use K, and an offset where it is measured"),
         ("dB", "dB", "S123", "'dB' is a logarithm, no multiple of an SI unit",
@@ -183,11 +184,12 @@ def test_a_quantity_is_a_number_of_units(text: str, value: float, unit: str) -> 
 @pytest.mark.parametrize(
     ("text", "at", "code", "message", "advice"),
     [
-        ("m", "m", "S124", "a quantity begins with a number (got 'm')", "write it as '0.05 m'"),
-        ("", "", "S124", "a quantity begins with a number (got '')", "write it as '0.05 m'"),
+        ("m", "m", "S124", "a quantity begins with a number (got 'm')", "write it as '0.05 m/s'"),
+        ("", "", "S124", "a quantity begins with a number (got '')", "write it as '0.05 m/s'"),
         ("5", "5", "S124", "'5' lacks a unit", "write 5 without quotes, or add its unit"),
-        ("1e999 m", "1e999", "S124", "the number 1e999 is too large", ""),
+        ("1e999 m", "1e999", "S124", "the number 1e999 is too large", "write a finite one"),
         ("5 mmm", "mmm", "S121", "no unit is named 'mmm'", "did you mean 'mm'?"),
+        ("5 furlongz", "furlongz", "S121", "no unit is named 'furlongz'", "write it in m/s"),
         ("0.5 s", "0.5 s", "S125", "0.5 s can't be read in m/s", "write it in m/s"),
         ("1 km", "1 km", "S125", "1 km can't be read in m/s", "write it in m/s; km is m in SI"),
     ],
