@@ -1,7 +1,7 @@
 """A run as pictures draw it: the scene, everybody's trail, and what was required."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
@@ -27,6 +27,7 @@ from specc.figures.scene import (
     Scene,
     Trails,
 )
+from specc.last_light import last_light
 from verifier.report.requirement_results import Outcome as Judged
 from verifier.report.requirement_results import RequirementResult
 
@@ -42,8 +43,10 @@ EYES: Final = {
 
 def pictured(made: Run, requirements: Sequence[RequirementResult]) -> tuple[Scene, Trails]:
     """What posters and films show of a run; the light where the run kept it."""
-    scene = scene_of(made.scenario, made.layout.things, glow_of(made.scenario, made.floor))
-    return scene, trails_of(course_of(made), requirements)
+    course = course_of(made)
+    glow = glow_of(made.scenario, made.floor)
+    scene = scene_at_end(made.scenario, made.layout.things, glow, course)
+    return scene, trails_of(course, requirements)
 
 
 def glow_of(scenario: Scenario, floor: LightFrames | None) -> Glow | None:
@@ -71,7 +74,21 @@ def scene_of(scenario: Scenario, things: Sequence[Thing], glow: Glow | None = No
         ),
         glow=glow,
         seed=scenario.seed,
+        spoken=spoken_of(scenario),
     )
+
+
+def spoken_of(scenario: Scenario) -> frozenset[str]:
+    """Names of things that a requirement reads, or that a robot looks for by their own names."""
+    read = {
+        name.split(".", maxsplit=1)[0]
+        for requirement in scenario.requirements
+        for name in requirement.quantities
+    }
+    sought = {
+        name for robot in scenario.robots for sensor in robot.body.sensors for name in sensor.of
+    }
+    return frozenset(read | sought)
 
 
 def drawn_sensors(robot: Robot) -> list[Sensor]:
@@ -131,6 +148,17 @@ def course_of(made: Run) -> Course:
         made.touches,
         made.audit.jams,
     )
+
+
+def scene_at_end(
+    scenario: Scenario, things: Sequence[Thing], glow: Glow | None, course: Course
+) -> Scene:
+    """What stands in a scenario, and the light of its end, where light was kept at all."""
+    scene = scene_of(scenario, things, glow)
+    if glow is None:
+        return scene
+    last = last_light(scenario, things, course.poses[-1], float(course.times[-1]))
+    return replace(scene, last_glow=last)
 
 
 def trails_of(course: Course, requirements: Sequence[RequirementResult]) -> Trails:

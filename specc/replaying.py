@@ -18,7 +18,7 @@ from runtime.world.model_faults import faults_of_things
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.figures.scene import Scene, Trails
-from specc.pictured import Course, glow_of, scene_of, trails_of
+from specc.pictured import Course, glow_of, scene_at_end, trails_of
 from specc.recorded_requirements import judged_on
 from specc.run_standard import Carried, carried_by
 from verifier.architectures.document import ScenarioDocument
@@ -70,7 +70,7 @@ def replayed(trace: Path | str, reading: Progress | None = None) -> Replay:
     course = _course(log, scenario.robots, happened, names)
     if not course.times.size:
         raise _damaged(trace, "it does not tell where the robots were")
-    scene = scene_of(scenario, happened.things, glow)
+    scene = scene_at_end(scenario, happened.things, glow, course)
     return Replay(scenario, scene, trails_of(course, requirements), requirements)
 
 

@@ -46,6 +46,8 @@ SHARE: Final = 0.005
 """Of the time; who acts less is not told of."""
 MINUTES: Final = 180.0
 """Seconds from which on a run is told in minutes."""
+FINE: Final = 500
+"""Cells of light along the floor that are shown as they are; of fewer one would see the steps."""
 DIM: Final = 0.5
 """The power by which lux become shades: light falls off so fast that a bulb would be a dot."""
 
@@ -223,7 +225,7 @@ def _light(
     """The light on the floor, with a bar in lux."""
     if scene.glow is None:
         return
-    shown = light_image(axes, scene.glow, palette)
+    shown = light_image(axes, scene.last_glow or scene.glow, palette)
     shown.set_clip_path(patch([scene.arena]).get_path(), axes.transData)
     bar: Colorbar = figure.colorbar(
         shown, cax=axes_at(figure, (corner[0], corner[1]), (0.13, 1.25)), extend="max"
@@ -248,7 +250,7 @@ def light_image(axes: Axes, glow: Glow, palette: Palette) -> AxesImage:
         origin="lower",
         cmap=lux_colors(palette),
         norm=PowerNorm(DIM, 0.0, brightest),
-        interpolation="bilinear",
+        interpolation="none" if max(glow.lux.shape[1:]) >= FINE else "bilinear",
         aspect="equal",
         zorder=0,
     )
