@@ -6,6 +6,7 @@ No clock of a computer is read: the same scenario and seed leave the same arrays
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final, TypeAlias, final
 
 import numpy as np
@@ -78,6 +79,7 @@ def run(
     scenario: Scenario,
     *,
     allow_code: bool = False,
+    beside: Path | None = None,
     learners: Mapping[str, Learner] = NO_LEARNERS,
     observer: Observer | None = None,
     progress: Progress | None = None,
@@ -89,6 +91,7 @@ def run(
     Args:
         scenario: compiled.
         allow_code: whether Python that the scenario names may be run.
+        beside: the folder where it is looked for; None for that of each architecture's own file.
         learners: by `robot.node`, what decides instead of the arbiter that is there.
         observer: is told everything as it happens.
         progress: is told a few hundred times how far it is.
@@ -101,7 +104,9 @@ def run(
         UserCodeError: code of the user's own may not be run, is not found, or raised.
     """
     gathering = Gathering(scenario, observer or Silent())
-    begun = started(scenario, allow_code=allow_code, learners=learners, observer=gathering)
+    begun = started(
+        scenario, allow_code=allow_code, beside=beside, learners=learners, observer=gathering
+    )
     world, scheduler = begun.world, begun.scheduler
     watch = _Watch(scenario, world, begun.senses, light_every, seen)
     steps = max(round(scenario.duration / scenario.step), 1)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import final
 
 from runtime.scenario import Scenario
@@ -27,6 +28,7 @@ def started(
     scenario: Scenario,
     *,
     allow_code: bool = False,
+    beside: Path | None = None,
     learners: Mapping[str, Learner] = NO_LEARNERS,
     observer: Observer | None = None,
 ) -> Started:
@@ -60,6 +62,7 @@ def started(
         world,
         SensorBank(robots, world, scenario.step, scenario.seed),
         allow_code=allow_code,
+        beside=beside,
         observer=observer,
         learners=learners,
     )

@@ -31,7 +31,7 @@ def load_callee(text: str, beside: Path) -> Callee:
     except (Exception, SystemExit) as error:
         raise UserCodeError(
             f"{module_name} can't be imported ({type(error).__name__}: {error}); it is looked for "
-            "beside the spec and among the installed packages"
+            "beside the spec or artifact and among the installed packages"
         ) from error
     found: Callee | None = getattr(module, name, None)
     if not callable(found):

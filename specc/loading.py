@@ -125,6 +125,14 @@ def load_scenario(
     return CompiledScenario(found if seed is None else replace(found, seed=seed), ())
 
 
+def beside_artifact(path: Path) -> Path | None:
+    """Where code is looked for that an artifact names; None for a .yaml, which is beside its own.
+
+    What an artifact says of its source is somebody's word, and no folder.
+    """
+    return path.parent if path.suffix == ".specc" else None
+
+
 @contextmanager
 def _told(path: Path, wanted: str) -> Iterator[None]:
     """What keeps an artifact from being used, as a diagnostic: V335."""

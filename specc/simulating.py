@@ -15,7 +15,7 @@ from runtime.world.layout import NoRoomError
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.given import Value, seconds
-from specc.loading import load_scenario
+from specc.loading import beside_artifact, load_scenario
 from verifier.architectures.required import results_on
 from verifier.report.requirement_results import Outcome, RequirementResult
 
@@ -44,6 +44,7 @@ def simulate_scenario(
     seed: int | None = None,
     duration: Value | None = None,
     allow_code: bool = False,
+    beside: Path | None = None,
     light_every: float | None = None,
     progress: Progress | None = None,
     observer: Observer | None = None,
@@ -55,6 +56,8 @@ def simulate_scenario(
         spec: a compiled scenario, or the path of one.
         seed, duration: in the place of the scenario's own.
         allow_code: whether Python that the scenario names may be run.
+        beside: the folder where it is looked for; None for that of the artifact, or else of the
+            spec that names it.
         light_every: seconds between two pictures of the light on the floor; None for none.
         progress: is told what is done, how much of it, and of how much.
         observer, seen: are told everything as it happens, and where all are; see `run`.
@@ -65,6 +68,7 @@ def simulate_scenario(
     """
     tell = progress or _in_silence
     if not isinstance(spec, Scenario):
+        beside = beside or beside_artifact(Path(spec))
         spec = load_scenario(spec, tell, allow_code=allow_code).scenario
     scenario = spec
     if seed is not None:
@@ -76,6 +80,7 @@ def simulate_scenario(
         made = run(
             scenario,
             allow_code=allow_code,
+            beside=beside,
             light_every=light_every,
             observer=observer,
             seen=seen,

@@ -18,7 +18,7 @@ from runtime.scheduler.clock import Clock
 from runtime.scheduler.environment import Environment, Sensors
 from runtime.scheduler.nodes import Learner, Said
 from runtime.scheduler.observer import Observer, Silent
-from runtime.user_code import Callee, UserCodeError, load_callee
+from runtime.user_code import Callee, UserCodeError, load_callee, where_is
 
 NEVER: Final = 2**62
 NO_LEARNERS: Final[Mapping[str, Learner]] = {}
@@ -38,12 +38,14 @@ class Scheduler:
         sensors: Sensors,
         *,
         allow_code: bool = False,
+        beside: Path | None = None,
         observer: Observer | None = None,
         learners: Mapping[str, Learner] = NO_LEARNERS,
     ) -> None:
         """Begin at instant 0, before anything has happened.
 
-        allow_code: whether Python that the scenario names may be run. learners: by `robot.node`,
+        allow_code: whether Python that the scenario names may be run. beside: the folder where it
+        is looked for; None for that of each architecture's own file. learners: by `robot.node`,
         what decides instead of the arbiter that the architecture has there.
 
         Raises:
@@ -57,7 +59,9 @@ class Scheduler:
             Agent(
                 scenario,
                 place,
-                _finder(robot.architecture.source.file, allow_code=allow_code),
+                _finder(
+                    beside or Path(robot.architecture.source.file).parent, allow_code=allow_code
+                ),
                 learners,
                 self._observer,
             )
@@ -143,12 +147,13 @@ class Scheduler:
         return min(self._sensors.next_due, speech, NEVER if ticks is None else ticks)
 
 
-def _finder(spec: str, *, allow_code: bool) -> Callable[[str], Callee]:
-    """What finds the user's code beside a spec, if it may be run."""
+def _finder(beside: Path, *, allow_code: bool) -> Callable[[str], Callee]:
+    """What finds the user's code in a folder, if it may be run."""
 
     def find(text: str) -> Callee:
         if not allow_code:
-            raise UserCodeError(f"{text} is code of your own, which is run only with --allow-code")
-        return load_callee(text, Path(spec).parent)
+            place = where_is(text, beside)
+            raise UserCodeError(f"{text} is code ({place}), which is run only with --allow-code")
+        return load_callee(text, beside)
 
     return find

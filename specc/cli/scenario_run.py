@@ -25,7 +25,7 @@ LIGHT_EVERY: Final = 1.0
 @final
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What a user wants of a run."""
+    """What a user wants of a run; beside: where code is looked for, as of `simulate_scenario`."""
 
     duration: str | None
     seed: int | None
@@ -33,6 +33,7 @@ class Wanted:
     pictures: Pictures
     is_watched: bool
     allow_code: bool
+    beside: Path | None
     form: Format
 
 
@@ -95,6 +96,7 @@ def _simulated(
         scenario,
         duration=wanted.duration,
         allow_code=wanted.allow_code,
+        beside=wanted.beside,
         light_every=LIGHT_EVERY if keeps_light else None,
         progress=tell,
         observer=onlooker,

@@ -106,7 +106,8 @@ def simulate(
     if kind == "scenario":
         if start or settings or every is not None:
             raise typer.BadParameter("--start, --set and --every are for a behavior alone")
-        wanted = Wanted(duration, seed, output, pictures, watch, allow_code, form)
+        beside = loading.beside_artifact(spec)
+        wanted = Wanted(duration, seed, output, pictures, watch, allow_code, beside, form)
         return run_scenario(spec, wanted)
     if pictures.are_wanted or watch or speed is not None:
         raise typer.BadParameter(

@@ -186,6 +186,7 @@ RUN = [
     "compile sneaks.yaml --allow-code",
     "compile run.yaml --allow-code",
     "simulate run.yaml --allow-code",
+    "simulate run.specc --allow-code",
     "simulate creep.yaml",
     "portrait creep.yaml --set room=1",
     "compare creep.yaml creep.specc",
@@ -216,7 +217,31 @@ def test_nodes_that_are_code_are_none_the_safer_in_an_artifact(
     mark: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["simulate", "run.specc"]) == 2
-    assert "error[V382]" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "error[V382]: sly:mood is code (sly.py), which is run only with --allow-code" in told
+    assert not mark.exists()
+
+
+def test_simulate_looks_for_code_beside_an_artifact_and_in_no_folder_that_it_names(
+    specs: Path, mark: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    away = tmp_path / "run.specc"
+    compiled = ["compile", str(specs / "run.yaml"), "--allow-code", "-o", str(away)]
+    assert main(compiled) == 0  # which names the folder of the specs in full
+    mark.unlink()
+    simulate = ["simulate", str(away), "--duration", "0.1 s", "--allow-code"]
+
+    assert main(simulate) == 2
+    assert "sly can't be imported" in capsys.readouterr().err
+    assert not mark.exists()
+
+    (tmp_path / "sly.py").write_text(CODE, encoding="utf-8")
+    assert main(simulate[:-1]) == 2
+    assert f"sly:mood is code ({tmp_path / 'sly.py'})" in capsys.readouterr().err
+    assert not (tmp_path / "mark").exists()
+
+    assert main(simulate) in {0, 4}
+    assert (tmp_path / "mark").exists()
     assert not mark.exists()
 
 
