@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-arbiters study-agents study-senses study-world study-paradigms study-principles bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-principles bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -61,6 +61,9 @@ study-world: .venv/ready study-senses ## pushing, speed and hours of the simulat
 
 study-agents: .venv/ready ## the thesis's two agents with a bumper: 8 worlds, an hour each
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.agents
+
+study-exclusion: .venv/ready ## the law of exclusion: 3,000 random architectures, proved or refuted, in the scheduler
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.exclusion
 
 study-arbiters: .venv/ready ## error rates of the verdict on arbiters: 12,000 logs
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.arbiters

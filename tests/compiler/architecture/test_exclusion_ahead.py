@@ -16,7 +16,7 @@ from compiler.architecture.exclusion.table_ranges import columns_over
 from compiler.architecture.signals import box_of
 from runtime.arrays import Array
 from runtime.code import Code
-from runtime.flow import Source, flow_of
+from runtime.flow import flow_of
 from runtime.interpolation import tabulate
 from runtime.machine import run_tape
 from runtime.program import Coordinate, Program, Role, Term
@@ -49,14 +49,14 @@ def program_of(table: Table) -> Program:
 
 def looked_up(program: Program, points: Array) -> Array:
     """The rates (N, n) of a behavior's tape, which goes on beyond the table's edges."""
-    n = len(program.states)
-    register = np.tile(flow_of(program).defaults, (len(points), 1))
-    register[:, :n] = points
-    results: Array = run_tape(flow_of(program, Source.TABLES).tape, register)
+    flow = flow_of(program)
+    register = np.tile(flow.defaults, (len(points), 1))
+    register[:, : len(program.states)] = points
+    results: Array = run_tape(flow.tape, register)
     return results
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(
     st.integers(0, 10**6),
     st.integers(1, 3),
@@ -150,7 +150,7 @@ def test_one_that_leaves_its_table_by_half_a_cell_still_acts_in_their_place() ->
 rates = st.sampled_from(["1", "y neg", "y 2 mul", "z", "y sin", "y z mul", "p", "y abs sqrt", "k"])
 
 
-@settings(max_examples=80)
+@settings(max_examples=50)
 @given(rates, rates, st.sampled_from([0.01, 0.2, 0.7]), st.lists(st.floats(0, 1), min_size=5))
 def test_no_stage_of_a_tick_leaves_the_box(
     y: str, z: str, period: float, at: Sequence[float]

@@ -23,7 +23,7 @@ def test_an_answer_is_what_the_scheduler_does(case: Case, seed: int) -> None:
     _obeys(case, seed, 50)
 
 
-@settings(max_examples=12)
+@settings(max_examples=8)
 @given(cases_at_large(), seeds)
 def test_so_it_is_where_behaviors_combine_and_readings_inhibit(case: Case, seed: int) -> None:
     _obeys(case, seed, 30)
