@@ -161,7 +161,7 @@ class Sampled:
 
     def _reading(self, place: int, entry: Entry) -> Expr:
         raw = self._raw(place, entry)
-        if entry.signal < 0 or not self._leaves(entry):
+        if entry.signal < 0 or not leaves(self.question, entry):
             return raw
         if entry.limit is Limit.WRAPS:
             return wrapped(raw, entry.low, entry.high)
@@ -175,26 +175,19 @@ class Sampled:
             return Apply("neg", (name,))
         return Apply("mul", (name, Number(entry.scale)))
 
-    def _leaves(self, entry: Entry) -> bool:
-        """Whether the signal can be outside the entry's domain."""
-        signal = self.question.signals[entry.signal]
-        ends = sorted((signal.low * entry.scale, signal.high * entry.scale))
-        return not (entry.low <= ends[0] and ends[1] <= entry.high)
-
     def inside(self) -> Formula:
         """Where nothing outside its domain keeps the node from acting, or deciding."""
         return both(
             either((self._is_read_inside(i, entry), *self._are_set_inside(i, entry)))
             for i, entry in enumerate(self.decider.entries)
-            if entry.signal >= 0 and entry.limit is Limit.INHIBITS
+            if may_inhibit(self.question, entry)
         )
 
     def _is_read_inside(self, place: int, entry: Entry) -> Formula:
         raw = self._raw(place, entry)
         parts = [truth(self._is_way(place, 0))] if entry.sets else []
-        if self._leaves(entry):
-            parts.append(compared(raw, Number(entry.low), EQUAL | MORE))
-            parts.append(compared(raw, Number(entry.high), EQUAL | LESS))
+        parts.append(compared(raw, Number(entry.low), EQUAL | MORE))
+        parts.append(compared(raw, Number(entry.high), EQUAL | LESS))
         return both(parts)
 
     def _are_set_inside(self, place: int, entry: Entry) -> Iterator[Formula]:
@@ -219,6 +212,21 @@ def wrapped(raw: Expr, low: float, high: float) -> Expr:
     inside = Apply("and", (Apply("ge", (raw, first)), Apply("le", (raw, last))))
     turned = Apply("sub", (raw, Apply("mul", (turn, turns))))
     return Apply("where", (inside, raw, Apply("clip", (turned, first, last))))
+
+
+def leaves(question: Question, entry: Entry) -> bool:
+    """Whether the signal of an entry can be outside the entry's domain."""
+    signal = question.signals[entry.signal]
+    ends = sorted((signal.low * entry.scale, signal.high * entry.scale))
+    return not (entry.low <= ends[0] and ends[1] <= entry.high)
+
+
+def may_inhibit(question: Question, entry: Entry) -> bool:
+    """Whether what an entry is can keep its node from acting, or deciding."""
+    if entry.signal < 0 or entry.limit is not Limit.INHIBITS:
+        return False
+    is_set_outside = any(not entry.low <= value <= entry.high for value in entry.sets)
+    return is_set_outside or leaves(question, entry)
 
 
 def remembers(rule: Rule, decider: Decider) -> bool:

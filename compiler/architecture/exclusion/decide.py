@@ -140,7 +140,7 @@ def _conditions(question: Question) -> str:
     if question.unless:
         instead = listed([one.name for one in question.unless])
         return f"where {first} and {second} would both act, {instead} acts in their place"
-    who = listed([d.name for d in question.deciders if not is_plain(d)], last="and")
+    who = listed([d.name for d in question.deciders if not is_plain(question, d)], last="and")
     return f"by the conditions of {who}, {first} and {second} never act at once"
 
 

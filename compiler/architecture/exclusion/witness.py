@@ -6,9 +6,9 @@ from typing import final
 
 from compiler.architecture.codes import tree_of
 from compiler.architecture.exclusion.answer import Moment, Reading, Sample, Witness
-from compiler.architecture.exclusion.conditions import Taken
+from compiler.architecture.exclusion.conditions import Taken, may_inhibit
 from compiler.architecture.exclusion.overlap import Timing
-from compiler.architecture.exclusion.question import Decider, Entry, How, Limit, Question
+from compiler.architecture.exclusion.question import Decider, Entry, How, Question
 from compiler.architecture.exclusion.search import round_between
 from runtime.code import Code
 from spec_schema.expressions.rewrite import names_in
@@ -88,9 +88,9 @@ def _sample(
     effects = []
     for one in decisions:
         decider = question.deciders[one.decider]
-        if is_plain(decider):
+        if is_plain(question, decider):
             continue
-        used = names_used(decider, one.outcome)
+        used = names_used(question, decider, one.outcome)
         for entry in decider.entries:
             if entry.name in used and entry.name in one.taken.readings and entry.signal >= 0:
                 reading = _reading(question, entry, one.taken.readings[entry.name])
@@ -145,13 +145,14 @@ def _reading(question: Question, entry: Entry, value: float) -> Reading:
     return Reading(signal.name, value, signal.unit, label)
 
 
-def is_plain(decider: Decider) -> bool:
+def is_plain(question: Question, decider: Decider) -> bool:
     """Whether it always holds."""
-    return decider.how is How.CONDITION and all(code.text == "1" for code in decider.codes)
+    is_sure = decider.how is How.CONDITION and all(code.text == "1" for code in decider.codes)
+    return is_sure and not any(may_inhibit(question, entry) for entry in decider.entries)
 
 
-def names_used(decider: Decider, outcome: int) -> frozenset[str]:
-    """What an outcome depends on, by name."""
+def names_used(question: Question, decider: Decider, outcome: int) -> set[str]:
+    """What an outcome depends on, by name; what may keep the node from acting, too."""
     codes: list[Code] = [decider.codes[outcome]] if decider.codes else []
     places = [i for i, rule in enumerate(decider.rules) if rule.choice == outcome]
     if decider.how is How.FIRST and places:
@@ -159,7 +160,8 @@ def names_used(decider: Decider, outcome: int) -> frozenset[str]:
     for place in places:
         rule = decider.rules[place]
         codes += [code for code in (rule.when, rule.until) if code is not None]
-    return frozenset(name for code in codes for name in names_in(tree_of(code)))
+    inhibiting = {entry.name for entry in decider.entries if may_inhibit(question, entry)}
+    return inhibiting.union(*(names_in(tree_of(code)) for code in codes))
 
 
 def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
@@ -172,11 +174,10 @@ def _assumed(question: Question, decisions: list[Decision]) -> Iterable[str]:
         if decider.how is How.ONE:
             mode = decider.outcomes[one.outcome]
             yield f"{decider.name} is ever {'not ' if one.is_denied else ''}in {mode}"
-        used = names_used(decider, one.outcome)
+        used = names_used(question, decider, one.outcome)
         for entry in decider.entries:
-            if entry.name in used or entry.limit is Limit.INHIBITS:
+            if entry.name in used:
                 yield from _assumed_of_setting(decider, entry, one.taken)
-            if entry.name in used and entry.name in one.taken.readings:
                 yield from _assumed_of_reading(question, decider, entry, one.taken)
 
 
@@ -194,7 +195,9 @@ def _assumed_of_reading(
     question: Question, decider: Decider, entry: Entry, taken: Taken
 ) -> Iterable[str]:
     """What a node tells, or keeps by itself."""
-    value = taken.readings[entry.name]
+    value = taken.readings.get(entry.name)
+    if value is None:
+        return
     if entry.signal >= 0 and question.signals[entry.signal].told:
         yield f"{_reading(question, entry, value).text} at times"
     elif entry.signal < 0 and len(entry.values) != 1:
@@ -211,7 +214,7 @@ def _help(question: Question, decisions: list[Decision]) -> str:
     free = [
         actor.name
         for actor in (question.first, question.second)
-        if all(is_plain(question.deciders[d]) for need in actor.needs for d, _ in need)
+        if all(is_plain(question, question.deciders[d]) for need in actor.needs for d, _ in need)
     ]
     if free:
         return f"nothing keeps {' or '.join(free)} from acting: name it in a choice of the arbiter"

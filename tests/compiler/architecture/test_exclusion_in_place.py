@@ -5,17 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from compiler.architecture.exclusion.answer import Answer, Proof, Undecided
+from compiler.architecture.exclusion.answer import Answer, Proof, Undecided, Witness
 from compiler.architecture.exclusion.decide import decide
 from compiler.check import check
 from runtime.arbiter import Paradigm
 from runtime.architecture import Outside
 from runtime.code import Code
 from runtime.program import Output, Program, Role
+from tests.compiler.architecture.at_large import with_ranges
 from tests.compiler.architecture.exclusions import INPUTS, Case, N, acting, arbiter, behavior, wired
 from tests.runtime.behaviors import NOWHERE, ONE, formula_program, state
 
 PARTS = ("first", "second")
+INHIBITS = Outside.INHIBIT
 LOW = {0: [0.25] * 3, 1: [0.25] * 3}
 
 
@@ -85,7 +87,7 @@ def test_an_arbiter_of_any_choices_may_not_let_it_act() -> None:
 
 
 def test_a_control_that_a_choice_may_set_still_inhibits() -> None:
-    both = replace(combining(giving("p")), inputs={**INPUTS, "k": ("a.r", 2.0, Outside.INHIBIT)})
+    both = replace(combining(giving("p")), inputs={**INPUTS, "k": ("a.r", 2.0, INHIBITS)})
     rules = [(0, "p 5 gt", None, 0.0), (1, None, None, 0.0)]
     setter = N(
         "choose",
@@ -98,6 +100,30 @@ def test_a_control_that_a_choice_may_set_still_inhibits() -> None:
 
     assert not isinstance(answer, Proof)
     assert case_of(both, setter).both_act({0: [2.0] * 3, 1: [0.0] * 3}, 3) == [0, 1, 2]
+
+
+def test_a_witness_tells_the_reading_that_keeps_it_from_acting() -> None:
+    both = replace(combining(giving("p")), inputs={**INPUTS, "k": ("a.r", 2.0, INHIBITS)})
+
+    answer = answer_of(both)
+
+    assert isinstance(answer, Witness)
+    assert answer.text == (
+        "first and second both act at 0 s: at 0 s a.r is 1.5 (both does not act from 0 s)"
+    )
+    assert case_of(both).replayed(answer)
+
+
+def test_what_it_is_told_may_be_outside_only_where_that_is_assumed() -> None:
+    teller = N("teller", giving("p 3 mul"), inputs=INPUTS)
+    both = replace(combining(giving("p")), inputs={**INPUTS, "q": ("teller.v", 1.0, INHIBITS)})
+    nodes = [acting("first"), acting("second"), teller, both]
+
+    answer = decide(with_ranges(wired(nodes), nodes).question)
+
+    assert isinstance(answer, Witness)
+    assert len(answer.assumed) == 1
+    assert "teller.v is" in answer.assumed[0]
 
 
 def test_a_choice_of_nothing_keeps_who_reads_it_from_acting(tmp_path: Path) -> None:
