@@ -1,6 +1,7 @@
 """A robot's decisions held against an arbiter's spec: the verdict, and what explains it."""
 
 from dataclasses import dataclass, replace
+from hashlib import blake2b
 from typing import Final, final
 
 import numpy as np
@@ -177,6 +178,14 @@ def _confusion(expected: Integers, decisions: Decisions, count: int) -> Integers
     return counted
 
 
+def _content(start: float, decisions: Decisions) -> str:
+    """A digest of what was read and chosen, and when."""
+    digest = blake2b(np.float64(start).tobytes(), digest_size=16)
+    for part in (decisions.times, decisions.register, decisions.chosen, decisions.judged):
+        digest.update(np.ascontiguousarray(part).tobytes())
+    return digest.hexdigest()
+
+
 def _report(
     arbiter: Arbiter, trace: Trace, decisions: Decisions, section: Arbitration, verdict: Verdict
 ) -> Report:
@@ -198,7 +207,11 @@ def _report(
         notes=trace.notes,
         spec=SpecIdentity(arbiter.name, source.file, source.sha256),
         trace=TraceIdentity(
-            trace.source, trace.start, duration, min(duration, decisions.period * starts.size)
+            trace.source,
+            trace.start,
+            duration,
+            min(duration, decisions.period * starts.size),
+            _content(trace.start, decisions),
         ),
         starts=starts,
         places={},

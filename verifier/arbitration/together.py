@@ -20,7 +20,11 @@ from verifier.report.wording import exact, listed
 
 
 def pooled_decisions(every: Sequence[Examination]) -> Examination:
-    """What two logs or more of one arbiter show together; regions stay with each log."""
+    """What two logs or more of one arbiter show together; regions stay with each log.
+
+    One that is there twice counts once, whatever it is called.
+    """
+    every, left = _distinct(every)
     sections = [each.arbitration for each in every if each.arbitration is not None]
     first, reports = sections[0], [each.report for each in every]
     share = _share([each.share for each in sections])
@@ -43,7 +47,7 @@ def pooled_decisions(every: Sequence[Examination]) -> Examination:
     report = replace(
         reports[0],
         verdict=VERDICTS[standing],
-        reasons=(*reasons[:1], *told),
+        reasons=(*reasons[:1], *told, *left),
         advice=advice,
         exclusions=(),
         losses=tuple(loss for each in reports for loss in each.losses),
@@ -54,6 +58,17 @@ def pooled_decisions(every: Sequence[Examination]) -> Examination:
     return Examination(
         report, origins=every[0].origins, arbitration=replace(section, sentences=told)
     )
+
+
+def _distinct(every: Sequence[Examination]) -> tuple[list[Examination], list[str]]:
+    """Each log once, and a sentence on each that is left out."""
+    kept: dict[str, Examination] = {}
+    left = []
+    for each in every:
+        trace = each.report.trace
+        if kept.setdefault(trace.content or trace.source, each) is not each:
+            left.append(f"{trace.source} is left out: it is there twice")
+    return list(kept.values()), left
 
 
 def _share(shares: Sequence[Share]) -> Share:
@@ -99,7 +114,7 @@ def _sentences(thresholds: Sequence[Threshold], sections: Sequence[Arbitration])
 def _identity(reports: Sequence[Report]) -> TraceIdentity:
     traces = [each.trace for each in reports]
     return TraceIdentity(
-        source=f"{len(traces)} recordings together",
+        source="1 recording" if len(traces) == 1 else f"{len(traces)} recordings together",
         start=min(each.start for each in traces),
         duration=sum(each.duration for each in traces),
         judged=sum(each.judged for each in traces),

@@ -227,12 +227,17 @@ class SpecIdentity:
 @final
 @dataclass(frozen=True, slots=True)
 class TraceIdentity:
-    """Which trace was read; `judged` are the seconds inside judged windows."""
+    """Which trace was read; `judged` are the seconds inside judged windows.
+
+    content: tells two traces with the same decisions apart from two that differ, whatever they
+    are called; empty where it is not told.
+    """
 
     source: str
     start: float
     duration: float
     judged: float
+    content: str = ""
 
 
 @final

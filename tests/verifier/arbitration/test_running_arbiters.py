@@ -175,6 +175,23 @@ def test_logs_that_are_short_decide_together(tmp_path: Path) -> None:
     assert near.interval.high == min(each.high for each in ends)
 
 
+def test_a_log_that_is_there_twice_counts_once(tmp_path: Path) -> None:
+    spec = spec_of(tmp_path, "rules", 0.5)
+    logs = [log_of(spec, tmp_path / f"{i}.csv", count=125, seed=i) for i in range(2)]
+    copy = tmp_path / "copy.csv"
+    copy.write_bytes(logs[0].read_bytes())
+
+    (pool,) = verify_together([*logs, copy], spec).pools
+
+    assert pool.examination.arbitration is not None
+    assert pool.examination.arbitration.share.decisions == 250
+    assert pool.report.reasons[-1] == f"{copy} is left out: it is there twice"
+    (only,) = verify_together([logs[0], copy], spec).pools
+    assert only.examination.arbitration is not None
+    assert only.examination.arbitration.share.decisions == 125
+    assert only.report.trace.source == "1 recording"
+
+
 def test_logs_of_robots_that_differ_contradict_one_another(tmp_path: Path) -> None:
     spec = spec_of(tmp_path / "spec", "rules", 0.5)
     robots = [spec_of(tmp_path / f"robot{near}", "rules", near) for near in (0.4, 0.7)]
