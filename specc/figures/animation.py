@@ -21,7 +21,7 @@ from specc.figures.scene import NOBODY, Scene, Trails
 from specc.figures.stage import TAIL, Stage, moment_of
 from specc.figures.style import look
 from specc.figures.style_names import Style
-from specc.figures.trails import DOERS, look_of, names_of
+from specc.figures.trails import DOERS, SELDOM, look_of, names_of, shares_of
 from specc.figures.world import LAMP
 from specc.files import unknown_suffix, write_atomically
 
@@ -98,7 +98,9 @@ def frames(
     rate, speed = pace
     rows = frame_rows(trails.times, rate / speed)
     with look(PALETTES[style]):
-        stage = Stage(scene, trails.doers, PALETTES[style], names_of(trails), speed=speed)
+        told = [name for name, share in shares_of(trails).items() if share >= SELDOM]
+        names = names_of(trails)
+        stage = Stage(scene, trails.doers, PALETTES[style], names, speed=speed, told=told)
         for done, row in enumerate(rows.tolist()):
             tell("drawing the film", done, len(rows))
             yield stage.at(moment_of(trails, row, TAIL * min(speed, MOST)))

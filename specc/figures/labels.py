@@ -29,7 +29,7 @@ DENSE: Final = 2.0
 """Points between two places of a line that words should not cover."""
 MARK: Final = 4
 """Places of a line that a mark counts for."""
-BODY: Final = 8.0
+BODY: Final = 20.0
 """Places of a line that a thing counts for."""
 FAR: Final = 0.25
 """What a point of distance costs, where a covered place of a line costs one."""

@@ -21,11 +21,12 @@ from runtime.arrays import Array, Integers
 from specc.figures.eyes import Glimpse, arcs, glimpses, hits
 from specc.figures.footprints import lamps_at, outline, patch, placed, reach_of
 from specc.figures.legend import Entry, draw_legend, line_entry
+from specc.figures.moving_names import MovingNames
 from specc.figures.palettes import Palette
 from specc.figures.paper import axes_at, new_figure, spaced
 from specc.figures.quantities import number
-from specc.figures.scene import NOBODY, Scene, Trails
-from specc.figures.trails import look_of
+from specc.figures.scene import NOBODY, EyeKind, Scene, Trails
+from specc.figures.trails import NOBODY_NAME, acts, look_of
 from specc.figures.world import LAMP, bounds, floor, light_image
 
 DPI: Final = 80
@@ -92,10 +93,15 @@ class Stage:
         names: Sequence[str],
         *,
         speed: float = 1.0,
+        told: Sequence[str] = (),
     ) -> None:
-        """doers: for each robot what may act; it may grow. names: what the legend tells of."""
+        """doers: for each robot what may act; it may grow.
+
+        names: of all that act, in the order of their colours. told: those of which the legend
+        tells; "nobody" may be one.
+        """
         self._scene, self._doers, self._palette = scene, doers, palette
-        self._names, self._speed = list(names), speed
+        self._names, self._speed, self._legend = list(names), speed, list(told)
         self._things = [outline(item.shape, CORNERS) for item in scene.things]
         self._robots = [outline(item.shape, CORNERS) for item in scene.robots]
         self._loose = [i for i, item in enumerate(scene.things) if not item.is_fixed]
@@ -111,11 +117,15 @@ class Stage:
         self._canvas.restore_region(self._still)
         for artist in self._movers:
             artist.draw(self._canvas.get_renderer())
-        return Image.fromarray(np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy())
+        picture = np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
+        self._given.stamp(picture)
+        return Image.fromarray(picture)
 
     def _set(self, moment: Moment) -> None:
         """All that stands still, and what will be moved."""
-        figure, self._axes, self._image = _still(self._scene, moment, self._names, self._palette)
+        entries = _entries(self._names, self._legend, self._palette)
+        entries += _sensed(self._scene, self._palette)
+        figure, self._axes, self._image = _still(self._scene, moment, entries, self._palette)
         self._figure, self._canvas, self._lit = figure, _canvas(figure), -1
         self._movers = [*self._bodies(), *self._words(figure)]
         for artist in self._movers:
@@ -149,6 +159,7 @@ class Stage:
         (self._lamps,) = self._axes.plot(
             [], [], "*", ms=13.0, mfc=LAMP, mec=palette.ink, mew=0.8, zorder=8
         )
+        self._given = MovingNames(self._axes, self._scene, palette)
         return [*movers, self._lamps]
 
     def _words(self, figure: Figure) -> list[Artist]:
@@ -178,6 +189,7 @@ class Stage:
         self._draw_ways(moment)
         self._draw_eyes(moment)
         self._lamps.set_data(*lamps_at(self._scene, poses).T)
+        self._given.move(poses, robots)
         self._write(moment, colors)
 
     def _draw_ways(self, moment: Moment) -> None:
@@ -211,7 +223,7 @@ class Stage:
         self._clock.set_text(f"{moment.time:.1f} s{fast}")
         for robot, told in enumerate(self._told):
             doer = int(moment.acting[robot])
-            name = "nobody" if doer == NOBODY else self._doers[robot][doer]
+            name = NOBODY_NAME if doer == NOBODY else self._doers[robot][doer]
             told.set_text(f"■ {self._scene.robots[robot].name}: {name}")
             told.set_color(colors[robot])
 
@@ -226,7 +238,7 @@ class Stage:
 
 
 def _still(
-    scene: Scene, moment: Moment, names: Sequence[str], palette: Palette
+    scene: Scene, moment: Moment, entries: Sequence[Entry], palette: Palette
 ) -> tuple[Figure, Axes, AxesImage | None]:
     """The figure with all that stands still, and the light on its floor."""
     left, low, right, high = bounds(scene)
@@ -251,20 +263,30 @@ def _still(
     title = spaced(scene.title)
     figure.text(MARGIN / width, 1.0 - 0.1 / height, title, fontsize=12, fontweight="bold", va="top")
     corner = ((MARGIN + size[0] + 0.12) / width, (MARGIN + size[1]) / height)
-    draw_legend(figure, [*_entries(names, palette)], corner)
+    draw_legend(figure, entries, corner)
     return figure, axes, shown
 
 
-def _entries(names: Sequence[str], palette: Palette) -> list[Entry]:
+def _entries(names: Sequence[str], told: Sequence[str], palette: Palette) -> list[Entry]:
     """What each colour of a robot and its way means; nothing where names are not known yet."""
-    if not names:
-        return []
-    drawn = [(place, f"{name} acts") for place, name in enumerate(names)]
-    drawn.append((NOBODY, "nobody acts"))
+    drawn = [(place, acts(name)) for place, name in enumerate(names) if name in told]
+    if NOBODY_NAME in told:
+        drawn.append((NOBODY, acts(NOBODY_NAME)))
     return [
         line_entry(label, color=look_of(place, palette)["color"], linewidth=2.6)
         for place, label in drawn
     ]
+
+
+def _sensed(scene: Scene, palette: Palette) -> list[Entry]:
+    """What lines around robots mean, of the sensors that they have."""
+    kinds = {eye.kind for robot in scene.robots for eye in robot.eyes}
+    found = line_entry("found by a sensor", color=palette.stable, linewidth=1.5)
+    free = line_entry("free up to there", color=palette.faint, linewidth=0.7)
+    bumped = line_entry("bumper is hit", color=palette.alarm, linewidth=3.0)
+    entries = [found] if kinds & {EyeKind.RANGE, EyeKind.SIGHT} else []
+    entries += [free] if EyeKind.RANGE in kinds else []
+    return entries + ([bumped] if EyeKind.BUMP in kinds else [])
 
 
 def _canvas(figure: Figure) -> Any:

@@ -30,6 +30,10 @@ DASHES: Final = (
 )  # fmt: skip
 MARGIN: Final = 4e-4
 """Share of the floor's longer side by which a straight piece may miss what was there."""
+NOBODY_NAME: Final = "nobody"
+"""Of `NOBODY`, in words."""
+SELDOM: Final = 0.02
+"""The share of the time below which the legend of a film does not tell who acts."""
 SHADES: Final = 100
 """Colours of a way that is coloured by time."""
 WIDTH: Final = 2.2
@@ -55,7 +59,7 @@ def shares_of(trails: Trails) -> dict[str, float]:
     for robot, doers in enumerate(trails.doers):
         for place, name in enumerate(doers):
             shares[name] += float(np.mean(trails.acting[:, robot] == place)) / len(trails.doers)
-    return shares | {"nobody": float(np.mean(trails.acting == NOBODY))}
+    return shares | {NOBODY_NAME: float(np.mean(trails.acting == NOBODY))}
 
 
 def pieces(acting: Integers) -> Iterator[tuple[int, int, int]]:
@@ -152,7 +156,7 @@ def draw_trails(
         if place in seen
     ]
     if NOBODY in seen:
-        entries.append(line_entry("nobody acts", linewidth=1.2, **look_of(NOBODY, palette)))
+        entries.append(line_entry(acts(NOBODY_NAME), linewidth=1.2, **look_of(NOBODY, palette)))
     return entries
 
 

@@ -122,6 +122,7 @@ def floor(axes: Axes, scene: Scene) -> None:
     axes.set_xlim(left, right)
     axes.set_ylim(low, high)
     axes.set_aspect("equal")
+    axes.set_facecolor(axes.figure.get_facecolor())
     for side in axes.spines.values():
         side.set_visible(False)
     closed = np.vstack([scene.arena, scene.arena[:1]])

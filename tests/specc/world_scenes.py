@@ -1,5 +1,7 @@
 """A run by hand, as pictures draw it: one robot drives along x, pushes a crate and is stuck."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from runtime.world.model import Disc, Polygon, Shape
@@ -47,5 +49,27 @@ def trails(seconds: float = 12.0, rate: float = 50.0) -> Trails:
         outcomes=(
             Outcome("always r.clearance > 1 cm", holds=False, margin="1 cm"),
             Outcome("eventually r.x > 2 m", holds=True),
+        ),
+    )
+
+
+def a_run(seed: int, robots: int, things: int) -> tuple[Scene, Trails]:
+    """Robots and things anywhere in a hall; robots go to and fro, and things are pushed."""
+    chance = np.random.default_rng(seed)
+    drawn, way = scene(lit=False), trails()
+    count = len(way.times)
+    poses = chance.uniform((0.2, 0.2, -3.0), (3.8, 1.8, 3.0), (2, robots + things, 3))
+    share = np.linspace(0.0, 1.0, count)[:, None, None]
+    all_poses = poses[0] + share * (poses[1] - poses[0])
+    shapes = [Item(f"crate_{i}", SQUARE, is_fixed=bool(i % 2)) for i in range(things)]
+    names = [Item(f"robot_{i}", ROUND) for i in range(robots)]
+    return (
+        replace(drawn, things=tuple(shapes), robots=tuple(names), lamps=drawn.lamps[:1]),
+        replace(
+            way,
+            things=all_poses[:, robots:],
+            robots=all_poses[:, :robots],
+            doers=way.doers * robots,
+            acting=np.tile(way.acting, (1, robots)),
         ),
     )
