@@ -25,8 +25,8 @@ from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
 from runtime.world.geometry import Plan
 from runtime.world.kernels import nearness
+from runtime.world.kernels.bodies import largest_speeds, states
 from runtime.world.kernels.cache import SOURCES as SENSES
-from runtime.world.kernels.speeds import largest
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Light, Pose
 from runtime.world.rays import NOBODY, View, first_hits, least_range, nearest_visible, parts_of
@@ -93,7 +93,8 @@ def _senses() -> object:
 def _gap() -> object:
     edges, circles = np.zeros((1, 4)), np.zeros((0, 3))
     far = nearness.gap(edges, circles, edges, circles, np.ones(1, dtype=np.bool_), np.inf)
-    return far, largest(np.zeros((1, 3)))
+    nobody = np.zeros(0, dtype=np.int64)
+    return far, largest_speeds(nobody), states(nobody, np.zeros((0, 6)))
 
 
 def _tick() -> object:

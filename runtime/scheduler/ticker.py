@@ -1,6 +1,7 @@
 """Ticks of a behavior: its program, packed for one compiled call a tick."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Final, final
 
 import numpy as np
@@ -25,6 +26,7 @@ from runtime.scheduler.kernels.tick import (
     OUTSIDE,
     OWN,
     Frame,
+    bench,
     tick,
 )
 from runtime.tape import Sum, pack, read_only_integers
@@ -67,7 +69,7 @@ class Ticker:
         self.told: Array = np.zeros(len(program.outputs) + len(commands))
         self._generator = generator
         self._kicks: Array = np.zeros(len(program.noise))
-        self._tick: Callable[..., int] | None = None
+        self._tick: Callable[[Array, int], int] | None = None
 
     @property
     def own(self) -> Array:
@@ -94,20 +96,16 @@ class Ticker:
         """
         if self._kicks.size:
             # Drawn whether or not it acts, so that its numbers do not depend on who inhibits it.
-            self._kicks = self._generator.standard_normal(self._kicks.size)
-        given = (
-            self._frame,
-            board,
-            self.inputs.signals,
-            self.inputs.values,
-            self.register,
-            self._kicks,
-            self.told,
-            int(allowed),
-        )
+            self._generator.standard_normal(out=self._kicks)
         if self._tick is None:
-            self._tick = machine_code(tick, given)
-        return self._tick(*given)
+            self._tick = self._compiled(board)
+        return self._tick(board, int(allowed))
+
+    def _compiled(self, board: Array) -> Callable[[Array, int], int]:
+        """What ticks: the compiled function, with all that it works on laid out for it."""
+        given = (self.inputs.signals, self.inputs.values, self.register, self._kicks, self.told)
+        laid_out = bench(self._frame, *given)
+        return partial(machine_code(tick, (laid_out, board, 1)), laid_out)
 
 
 def domains_of(program: Program) -> dict[str, Domain]:

@@ -1,21 +1,24 @@
 """The physics' own C functions, called without a detour where they are called in every step.
 
 pymunk's methods check and wrap what they are given, and its batches build a request for each call:
-of a step in which little moves that is the larger part. What is used here pymunk has not promised
-to keep; nothing else uses it, and tests compare each with the method that is promised.
+of a step in which little moves that is the larger part. Bodies and feet are read in memory. What is
+used here pymunk has not promised to keep; nothing else uses it, the places in memory are looked up
+on a body of known numbers first, and tests compare each with the method that is promised.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, Final, final
 
 import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
-from pymunk.batch import ArbiterFields, BodyFields
+from pymunk.batch import ArbiterFields
 
 from runtime.arrays import Array, Integers
-from runtime.world.kernels import felt_mass
+from runtime.direct_calls import machine_code
+from runtime.world.kernels import felt_mass, memory
+from runtime.world.kernels.bodies import largest_speeds, states
 from runtime.world.kernels.cache import address_for_c
 
 C: Final[Any] = lib
@@ -57,84 +60,107 @@ def feel_evenly(body: pymunk.Body) -> None:
     Raises:
         RuntimeError: Chipmunk's structures hold things elsewhere than this relies on.
     """
+    make_sure()
     C.cpBodySetVelocityUpdateFunc(body._body, _feeling())  # noqa: SLF001 (see above)
 
 
 @cache
 def _feeling() -> Any:
-    """The compiled function, once it is sure that it writes where it should."""
+    """The compiled function, for C."""
+    address = address_for_c(felt_mass.feel_evenly, felt_mass.SIGNATURE)
+    return ffi.cast("cpBodyVelocityFunc", address)
+
+
+@cache
+def make_sure() -> None:
+    """See that the physics keeps in memory what kernels look for where they look for it.
+
+    Raises:
+        RuntimeError: it does not.
+    """
     if not _is_laid_out_as_known():
         raise RuntimeError(
             f"pymunk {pymunk.version} keeps bodies and joints in memory otherwise than the physics "
             "of worlds relies on; install pymunk 7.3.1"
         )
-    address = address_for_c(felt_mass.feel_evenly, felt_mass.SIGNATURE)
-    return ffi.cast("cpBodyVelocityFunc", address)
 
 
 def _is_laid_out_as_known() -> bool:
-    """Whether a body with two joints is in memory as `felt_mass` says; nothing is written."""
+    """Whether a body with two joints is in memory as `memory` says; nothing is written."""
     mass, moment, (x, y) = 3.0, 7.0, (0.3, 0.4)
     space, body = pymunk.Space(), pymunk.Body(mass, moment)
-    before, foot = (
+    body.center_of_gravity, body.position = (0.1, 0.2), (1.0, 2.0)
+    feet = tuple(
         pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), at) for at in ((-0.5, 0.2), (x, y))
     )
-    space.add(body, before, foot)
+    space.add(body, *feet)
     space.step(1.0)
+    body.velocity, body.angular_velocity, body.angle = (5.0, 6.0), 8.0, 0.5
     other, own = space.static_body._body, body._body  # noqa: SLF001 (see above)
-    first, second = before._constraint, foot._constraint  # noqa: SLF001
-    ours, joint = _memory(own, felt_mass.JOINTS + 1), _memory(second, felt_mass.FELT + 4)
+    before, last = (foot._constraint for foot in feet)  # noqa: SLF001
+    ours, joint = _words(own, memory.JOINTS + 1), _words(last, memory.FELT + 4)
     links = (
-        (ours[1][felt_mass.JOINTS], second),
-        (joint[1][felt_mass.OTHER], other),
-        (joint[1][felt_mass.OWN], own),
-        (joint[1][felt_mass.NEXT], first),
+        (ours[memory.JOINTS], last),
+        (joint[memory.OTHER], other),
+        (joint[memory.OWN], own),
+        (joint[memory.NEXT], before),
     )
-    if any(word != int(ffi.cast("intptr_t", at)) for word, at in links):
+    if any(word != _address(of) for word, of in links):
         return False
-    felt = np.linalg.inv(np.eye(2) / mass + np.outer((-y, x), (-y, x)) / moment)
-    found = (ours[0][felt_mass.INVERSE_MASS], ours[0][felt_mass.INVERSE_MOMENT])
-    return bool(
-        np.allclose(found, (1.0 / mass, 1.0 / moment))
-        and np.allclose(joint[0][felt_mass.ARM :][:2], (x, y))
-        and np.allclose(joint[0][felt_mass.FELT :], felt.ravel())
+    mine, its = ours.view(np.float64), joint.view(np.float64)
+    arm = np.array((x, y)) - body.center_of_gravity
+    across = np.array((-arm[1], arm[0]))
+    expected: tuple[tuple[Array, Any], ...] = (
+        (mine[memory.INVERSE_MASS :][:1], 1.0 / mass),
+        (mine[memory.INVERSE_MOMENT :][:1], 1.0 / moment),
+        (mine[memory.PLACE :][:2], body.position),
+        (mine[memory.VELOCITY :][:2], body.velocity),
+        (mine[memory.HEADING :][:1], body.angle),
+        (mine[memory.TURN :][:1], body.angular_velocity),
+        (its[memory.ARM :][:2], arm),
+        (
+            its[memory.FELT :],
+            np.linalg.inv(np.eye(2) / mass + np.outer(across, across) / moment).ravel(),
+        ),
     )
+    return all(np.allclose(found, wanted) for found, wanted in expected)
 
 
-def _memory(at: Any, words: int) -> tuple[Array, Integers]:
-    """So many words of 8 bytes, as real numbers and as whole ones."""
-    copied = bytes(ffi.buffer(ffi.cast("char *", at), 8 * words))
-    return np.frombuffer(copied, dtype=np.float64), np.frombuffer(copied, dtype=np.int64)
+def _address(of: Any) -> int:
+    return int(ffi.cast("intptr_t", of))
+
+
+def _words(of: Any, count: int) -> Integers:
+    """So many words of 8 bytes from where a structure begins, as they are now."""
+    return np.frombuffer(bytes(ffi.buffer(ffi.cast("char *", of), 8 * count)), dtype=np.int64)
 
 
 @final
 class Bodies:
-    """Some numbers of every body of a space, in its own order, which changes."""
+    """Some bodies, of which numbers are read; they stay where they are in memory."""
 
-    def __init__(self, space: pymunk.Space, fields: BodyFields, width: int) -> None:
-        """width: how many real numbers the fields are."""
-        self._space, self._width = space._space, width  # noqa: SLF001 (see above)
-        self._visit = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
-        self._request = _Request(fields.value)
-        self._seen: Array = np.zeros((0, width))
-        self._seen_at: tuple[Any, int] = (None, 0)
+    def __init__(self, bodies: Sequence[pymunk.Body]) -> None:
+        """Note where they are; they are kept as long as this is.
 
-    def read(self) -> Array:
-        """The real numbers (n, width) as of now; the next call overwrites them."""
-        request = self._request
-        request.reals.num = request.whole.num = 0
-        C.cpSpaceEachBody(self._space, self._visit, request.data)
-        at = (request.reals.arr, request.reals.num)
-        if at != self._seen_at:
-            buffer = ffi.buffer(at[0], at[1] * ffi.sizeof("cpFloat"))
-            self._seen = np.frombuffer(buffer, dtype=np.float64).reshape(-1, self._width)
-            self._seen_at = at
-        return self._seen
+        Raises:
+            RuntimeError: Chipmunk's structures hold things elsewhere than this relies on.
+        """
+        make_sure()
+        self._bodies = tuple(bodies)
+        at = [_address(body._body) for body in bodies]  # noqa: SLF001 (see above)
+        self._at: Integers = np.array(at, dtype=np.int64)
+        self._states = machine_code(states, (self._at, np.zeros((1, 6))))
+        self._largest = machine_code(largest_speeds, (self._at,))
 
-    def order(self) -> bytes:
-        """The identities of the bodies that were read last, as machine words."""
-        whole = self._request.whole
-        return bytes(ffi.buffer(whole.arr, whole.num * ffi.sizeof("uintptr_t")))
+    def states(self) -> Array:
+        """Of all (n, 6): x, y, heading; velocity of the centre of mass x, y; turn rate."""
+        found = np.empty((len(self._at), 6))
+        self._states(self._at, found)
+        return found
+
+    def largest_speeds(self) -> tuple[float, float, float]:
+        """The largest amount of velocity x, velocity y, and turn rate, each alone."""
+        return self._largest(self._at)
 
 
 @final

@@ -4,15 +4,12 @@ import math
 from dataclasses import dataclass
 from typing import Final, NamedTuple, final
 
-import numpy as np
 import pymunk
-from pymunk.batch import ArbiterFields, BodyFields
+from pymunk.batch import ArbiterFields
 
 from runtime.arrays import Array
-from runtime.direct_calls import machine_code
 from runtime.world.chipmunk import Bodies, Contacts, stepper
 from runtime.world.footprint import Spread
-from runtime.world.kernels.speeds import largest
 from runtime.world.model import Pose, Shape
 
 ITERATIONS: Final = 20
@@ -27,14 +24,6 @@ SLEEP_AFTER: Final = 0.25
 PERSISTENCE: Final = 1
 """Steps that a contact is remembered: what is remembered is what touches now."""
 
-BODY: Final = (
-    BodyFields.BODY_ID
-    | BodyFields.POSITION
-    | BodyFields.ANGLE
-    | BodyFields.VELOCITY
-    | BodyFields.ANGULAR_VELOCITY
-)
-SPEEDS: Final = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 DEPTHS: Final = ArbiterFields.DISTANCE_1 | ArbiterFields.DISTANCE_2
 CONTACT: Final = (
     ArbiterFields.BODY_A_ID
@@ -101,23 +90,15 @@ class Space:
         self._numbers = {body.id: number for number, body in enumerate(self.bodies)}
         self._numbers[self.space.static_body.id] = len(self.bodies)
         self._step = stepper(self.space)
-        self._all = Bodies(self.space, BODY, 6)
-        self._speeds = Bodies(self.space, SPEEDS, 3)
-        self._largest = machine_code(largest, (self._speeds.read(),))
+        self._solids = Bodies(self.bodies)
+        self._all: Bodies | None = None
         self._depths = Contacts(self.space, DEPTHS)
         self._contacts = Contacts(self.space, CONTACT)
         self._arm = max((_arm(solid) for solid in solids if solid.mass is not None), default=0.0)
-        self._order = b""
-        self._rows = np.zeros(0, dtype=np.int64)
 
     def states(self) -> Array:
         """Of all solids (n, 6): x, y, heading; velocity of the centre of mass x, y; turn rate."""
-        found = self._all.read()
-        order = self._all.order()
-        if order != self._order:
-            self._sort(order)
-        states: Array = found.take(self._rows, axis=0)
-        return states
+        return self._solids.states()
 
     def step(self, seconds: float) -> float:
         """Let so many seconds pass; how deep outlines stand in one another then, at the worst (m).
@@ -130,8 +111,10 @@ class Space:
         return -min(found) - SLOP if found else -math.inf
 
     def fastest(self) -> float:
-        """A speed that no point of a body exceeds now (m/s)."""
-        x, y, turn = self._largest(self._speeds.read())
+        """A speed that no point of a body, nor a wheel, exceeds now (m/s)."""
+        if self._all is None:  # drives are added to the space later than solids
+            self._all = Bodies(tuple(self.space.bodies))
+        x, y, turn = self._all.largest_speeds()
         return math.hypot(x, y) + turn * self._arm
 
     def touches(self) -> list[Touch]:
@@ -153,13 +136,6 @@ class Space:
             ]
         # The physics keeps contacts by addresses, which differ from process to process.
         return sorted(found)
-
-    def _sort(self, order: bytes) -> None:
-        """Note which row of a batch is which solid; they change as bodies fall asleep."""
-        self._order = order
-        bodies = np.frombuffer(order, dtype=np.uintp).tolist()
-        rows = {self._numbers.get(body, -1): row for row, body in enumerate(bodies)}
-        self._rows = np.array([rows[number] for number in range(len(self.bodies))], dtype=np.int64)
 
 
 def _arm(solid: Solid) -> float:

@@ -9,14 +9,19 @@ the step itself, so that a timer of the behavior's own switches at its time and 
 Noise is added at the end of the period: one Euler-Maruyama increment (Kloeden, Platen 1992, 9.1).
 """
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple, final
 
+import numba
+import numba.experimental.structref
 import numpy as np
 
 from runtime.arrays import Array, Integers
 from runtime.kernels.cache import kernel, part
 from runtime.kernels.machine import run
 from runtime.kernels.tape import Tape
+
+NUMBA: Any = numba  # it has no types
+structref: Any = NUMBA.experimental.structref
 
 PARTS: Final = 8
 STAGES: Final = 4
@@ -85,28 +90,48 @@ class Frame(NamedTuple):
     room: Array
 
 
+@structref.register
+class BenchType(NUMBA.types.StructRef):  # type: ignore[misc]  # numba has no types
+    """The type of a bench, for numba."""
+
+
+@final
+class Bench(structref.StructRefProxy):  # type: ignore[misc]  # numba has no types
+    """All that a behavior's ticks work on, held together: 50 arrays take longer to hand over.
+
+    The arrays are those that it was made of. frame: what never changes.
+    signals, values: (m,) for each input its place on the board, or -1 and its value.
+    register: (r,) holds own states and constants before a tick; afterwards all as they are at the
+    sample. kicks: (k,) standard normal numbers for the noise.
+    told: filled with outputs, then commands.
+    """
+
+
+structref.define_boxing(BenchType, Bench)
+structref.define_constructor(
+    Bench, BenchType, ["frame", "signals", "values", "register", "kicks", "told"]
+)
+
+
 @kernel
-def tick(
-    frame: Frame,
-    board: Array,
-    signals: Integers,
-    values: Array,
-    register: Array,
-    kicks: Array,
-    told: Array,
-    allowed: int,
-) -> int:
+def bench(
+    frame: Frame, signals: Integers, values: Array, register: Array, kicks: Array, told: Array
+) -> Bench:
+    """Lay everything on a bench."""
+    return Bench(frame, signals, values, register, kicks, told)
+
+
+@kernel
+def tick(bench: Bench, board: Array, allowed: int) -> int:
     """Tick once; flags.
 
-    signals, values: (m,) for each input its place on the board, or -1 and its value.
-    register: (r,) holds own states and constants before; afterwards all as they are at the sample.
     Where the behavior has its way (`allowed` and no flag against it) its own states go a period
     on: they are left in row 6 of `frame.room`, which the next tick takes them from.
-    kicks: (k,) standard normal numbers for the noise. told: filled with outputs, then commands.
     """
+    frame, register, told = bench.frame, bench.register, bench.told
     n = frame.room.shape[1]
     x, new, later = frame.room[0], frame.room[1], frame.room[6]
-    flags = _sense(frame, board, signals, values, register)
+    flags = _sense(frame, board, bench.signals, bench.values, register)
     for i in range(register.shape[0]):
         frame.work[i, 0] = register[i]
         frame.rest_work[i, 0] = register[i]
@@ -123,7 +148,7 @@ def tick(
             later[frame.own[i]] = x[frame.own[i]]
     for j in range(frame.outputs):
         told[j] = frame.rest_work[frame.rest.results[1 + j], 0]
-    sizes = 1 + frame.outputs
+    sizes, kicks = 1 + frame.outputs, bench.kicks
     for j in range(frame.noisy.shape[0]):
         frame.room[5, frame.noisy[j]] = kicks[j] * frame.rest_work[frame.rest.results[sizes + j], 0]
     flags |= _ahead(frame, x, new, int(commits), flags)

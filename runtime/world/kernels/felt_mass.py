@@ -6,52 +6,22 @@ m / (1 + r² / gyration). It then limits the force. So the force of a foot that 
 point against its velocity, as friction does. With the least felt mass in all directions it does:
 the physics repeats its small corrections until forces and velocities fit (Moreau 1977: of all
 forces within the limit, the one of the greatest dissipation), and mass plays no part in that.
-
-The numbers below say where Chipmunk's structures hold what, in words of 8 bytes.
-`runtime.world.chipmunk` checks them before they are used.
 """
 
-from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
-import numba
-import numba.extending
-
-NUMBA: Any = numba  # its own types do not cover what is used of it here
-types: Any = NUMBA.types
-
-INVERSE_MASS: Final = 3
-INVERSE_MOMENT: Final = 5
-JOINTS: Final = 30
-"""Of a body: the first of its joints."""
-OTHER: Final = 2
-OWN: Final = 3
-"""Of a joint: its second body; a thing is the second of each of its joints."""
-NEXT: Final = 5
-"""Of a joint: the next joint of its second body."""
-ARM: Final = 19
-"""Of a joint: from the centre of mass of the second body to the foot, in the axes of the world."""
-FELT: Final = 21
-"""Of a joint: the mass felt there, a matrix of two by two."""
+from runtime.world.kernels.memory import (
+    ARM,
+    FELT,
+    INVERSE_MASS,
+    INVERSE_MOMENT,
+    JOINTS,
+    NEXT,
+    reals,
+    words,
+)
 
 SIGNATURE: Final = "void(int64)"
-
-
-def _memory(kind: Any) -> Callable[..., Any]:
-    """What makes numbers of this kind of the memory from an address on."""
-
-    def typed(_typing: Any, address: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            return builder.inttoptr(given[0], context.get_value_type(signature.return_type))
-
-        return types.CPointer(kind)(address), generate
-
-    made: Callable[..., Any] = NUMBA.extending.intrinsic(typed)
-    return made
-
-
-reals = _memory(types.float64)
-words = _memory(types.int64)
 
 
 def feel_evenly(body: int) -> None:

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pymunk
 import pytest
-from pymunk.batch import ArbiterFields, BodyFields
+from pymunk.batch import ArbiterFields
 
 from runtime.world import chipmunk
 from runtime.world.chipmunk import Bodies, Contacts, aimer, compass, finder, stepper
-from runtime.world.kernels import felt_mass
+from runtime.world.kernels import memory
 
 
 def pile(count: int) -> tuple[pymunk.Space, list[pymunk.Body]]:
@@ -69,19 +69,15 @@ def test_a_body_is_found_where_it_is() -> None:
 @pytest.mark.parametrize("count", [1, 3, 40])
 def test_all_bodies_are_read_as_they_are_and_as_they_come_to_be(count: int) -> None:
     space, bodies = pile(count)
-    fields = BodyFields.BODY_ID | BodyFields.POSITION | BodyFields.ANGLE
-    asked = Bodies(space, fields, 3)
-    by_id = {body.id: body for body in bodies}
+    bodies[-1].center_of_gravity = (0.1, -0.2)
+    asked = Bodies(bodies)
     for _ in range(3):
         space.step(0.01)
-        found = asked.read()
-        order = np.frombuffer(asked.order(), dtype=np.uintp).tolist()
+        found = asked.states()
 
-        assert set(by_id) <= set(order)
-        for row, number in zip(found.tolist(), order, strict=True):
-            if number in by_id:
-                body = by_id[number]
-                assert row == [*body.position, body.angle]
+        wanted = [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in bodies]
+        assert found.tolist() == [list(row) for row in wanted]
+        assert asked.largest_speeds() == tuple(np.abs(found[:, 3:]).max(axis=0))
 
 
 def test_contacts_are_those_that_arbiters_tell() -> None:
@@ -101,17 +97,28 @@ def test_contacts_are_those_that_arbiters_tell() -> None:
     assert min(told) == pytest.approx(math.hypot(0.9, 0.1) - 1.0, abs=0.02)
 
 
-def test_where_things_are_in_memory_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert chipmunk._is_laid_out_as_known()
+PLACES = [
+    "INVERSE_MASS",
+    "INVERSE_MOMENT",
+    "VELOCITY",
+    "HEADING",
+    "TURN",
+    "PLACE",
+    "JOINTS",
+    "OTHER",
+    "OWN",
+    "NEXT",
+    "ARM",
+    "FELT",
+]
 
-    for name in ("JOINTS", "OWN", "NEXT", "ARM", "FELT", "INVERSE_MASS", "INVERSE_MOMENT"):
-        with monkeypatch.context() as patch:
-            patch.setattr(felt_mass, name, getattr(felt_mass, name) + 1)
-            assert not chipmunk._is_laid_out_as_known()
 
-
-def test_another_layout_of_memory_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(felt_mass, "FELT", felt_mass.FELT + 1)
+@pytest.mark.parametrize("name", PLACES)
+def test_another_layout_of_memory_is_noticed_and_refused(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chipmunk.make_sure()
+    monkeypatch.setattr(memory, name, getattr(memory, name) + 1)
 
     with pytest.raises(RuntimeError, match=r"install pymunk 7\.3\.1"):
-        chipmunk._feeling.__wrapped__()
+        chipmunk.make_sure.__wrapped__()
