@@ -27,29 +27,20 @@ def gates_of(program: Program) -> Gates:
         ValueError: their code cannot be run.
     """
     guards = program.field.guards
-    return _gates(program, guards, (), -1) if guards else no_gates()
+    return packed_gates(program, guards, (), -1) if guards else no_gates()
 
 
-def gates_with_section(program: Program, section: Code, *, guarded: bool) -> Gates:
-    """A section that ends trajectories, and the guards of the program where it is `guarded`.
-
-    Raises:
-        ValueError: the code of the section cannot be run.
-    """
-    guards = program.field.guards if guarded else ()
-    return _gates(program, guards, (section,), 0)
-
-
-def gates_to_last(program: Program, last: int) -> Gates:
-    """The guards of a program; the one with the index `last` ends trajectories, after its jump."""
-    assert 0 <= last < len(program.field.guards), "a guard of the program"
-    return _gates(program, program.field.guards, (), last)
-
-
-def _gates(
+def packed_gates(
     program: Program, guards: Sequence[Guard], sections: tuple[Code, ...], last: int
 ) -> Gates:
-    """Sections stand before the guards: of what opens at one place, the first one counts."""
+    """Guards, and sections that end trajectories, as the kernel reads them.
+
+    Sections stand before the guards: of what opens at one place, the first one counts. The one
+    with the index `last` ends trajectories, a guard after its jump; -1: none does.
+
+    Raises:
+        ValueError: their code cannot be run.
+    """
     names = [state.name for state in program.states]
     ways = [(SECTION, SECTION, 0, 0) for _ in sections]
     jumps: list[tuple[int, Code]] = []

@@ -75,12 +75,17 @@ def self_bound(program: Program) -> Program:
 
     Simulated, the behavior always has its way: `judge_when` stays only if it reads no signal.
     """
-    bindings = [_binding(program, "state", state) for state in program.states]
-    bindings += [_binding(program, "control", control) for control in program.controls]
+    bindings = own_bindings(program)
     read = set(program.judge_when.tokens) if program.judge_when else set()
     signals = {binding.name for binding in program.bindings} - set(program.register)
     judge_when: Code | None = None if read & signals else program.judge_when
-    return dataclasses.replace(program, bindings=tuple(bindings), judge_when=judge_when)
+    return dataclasses.replace(program, bindings=bindings, judge_when=judge_when)
+
+
+def own_bindings(program: Program) -> tuple[Binding, ...]:
+    """Where a recording has the states and controls of a program."""
+    states = [_binding(program, "state", state) for state in program.states]
+    return (*states, *(_binding(program, "control", each) for each in program.controls))
 
 
 def _binding(program: Program, group: str, variable: State | Control) -> Binding:

@@ -12,7 +12,7 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.code import Code
 from runtime.flow import Flow
-from runtime.gates import gates_to_last, gates_with_section, no_gates
+from runtime.gates import no_gates, packed_gates
 from runtime.integrators import MOST_STEPS, Trajectories, adaptive_with
 from runtime.kernels.blocks import ARRIVED
 from runtime.kernels.events import Gates
@@ -70,11 +70,12 @@ def first_crossing(
     """
     assert abs(after) < abs(longest), "the longest time comes after the first"
     code = section if rising else Code(f"{section.text} neg")
-    gates = gates_with_section(flow.program, code, guarded=flow.switches and longest > 0.0)
+    guards = flow.program.field.guards if flow.switches and longest > 0.0 else ()
+    gates = packed_gates(flow.program, guards, (code,), 0)
     if after == 0.0:
         return _arrivals(_run(gates, flow, x0, u, longest, accuracy))
-    guards = flow.gates if longest > 0.0 else no_gates()
-    begun = _run(guards, flow, x0, u, after, accuracy)
+    before = flow.gates if longest > 0.0 else no_gates()
+    begun = _run(before, flow, x0, u, after, accuracy)
     found = _arrivals(_run(gates, flow, begun.states[:, -1], u, longest - after, accuracy))
     return Crossings(found.times + after, found.states)
 
@@ -92,7 +93,7 @@ def first_passage(
     The states are those after its jump, in the mode that it leads to.
     """
     assert longest > 0.0, "modes switch forwards in time"
-    gates = gates_to_last(flow.program, guard)
+    gates = packed_gates(flow.program, flow.program.field.guards, (), guard)
     return _arrivals(_run(gates, flow, x0, u, longest, accuracy))
 
 

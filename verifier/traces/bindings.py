@@ -5,7 +5,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import final
 
-from runtime.program import Binding, Control, Program, State
+from runtime.program import Binding, Program
+from runtime.recording.behavior import own_bindings
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from verifier.traces.faults import binding_diagnostic, nearest_help, origin_span
@@ -87,28 +88,7 @@ def texts_of(values: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
 def _own_bindings(program: Program) -> tuple[Binding, ...]:
     """Bindings to what specc records itself, for the variables that are not bound otherwise."""
     bound = {binding.name for binding in program.bindings}
-    states = [_own_binding(program, "state", s, texts_of(s.values)) for s in program.states]
-    controls = [_own_binding(program, "control", control, ()) for control in program.controls]
-    return tuple(binding for binding in (*states, *controls) if binding.name not in bound)
-
-
-def _own_binding(
-    program: Program,
-    group: str,
-    variable: State | Control,
-    values: tuple[tuple[str, int], ...],
-) -> Binding:
-    return Binding(
-        name=variable.name,
-        path=f"/{program.name}/{group}.{variable.name}",
-        unit=variable.unit,
-        delay=0.0,
-        scale=1.0,
-        offset=0.0,
-        constant=None,
-        values=values,
-        origin=variable.origin,
-    )
+    return tuple(binding for binding in own_bindings(program) if binding.name not in bound)
 
 
 def _topic(path: str) -> str:
