@@ -17,6 +17,8 @@ from specc.figures.style import BLUE, FAINT, GREEN, INK, VERMILION, bare, framed
 from verifier.report.report import Report, VariableResult
 
 SIGNED: Final = LinearSegmentedColormap.from_list("signed", [BLUE, "#dfe3e8", VERMILION])
+ROUNDING: Final = 1e-9
+"""What moved by less, as a share of its size, stood still."""
 MANY: Final = 1500
 """More points than these are stored as an image within the drawing."""
 
@@ -96,13 +98,16 @@ def _values(report: Report, name: str) -> tuple[str, ...]:
 
 
 def places_shown(report: Report) -> tuple[str, ...]:
-    """The one or two variables over which errors are shown: the coverage's, where it has them."""
+    """The one or two variables over which errors are shown: the coverage's first; what moved."""
     first = [] if report.coverage is None else [axis.name for axis in report.coverage.axes]
-    moving = [
-        name for name, values in report.places.items() if values.size and np.ptp(values) > 0.0
-    ]
-    known = [name for name in dict.fromkeys([*first, *moving]) if name in report.places]
-    return tuple(known[:2])
+    known = [name for name in dict.fromkeys([*first, *report.places]) if name in report.places]
+    moving = [name for name in known if _values(report, name) or _moved(report.places[name])]
+    return tuple(moving[:2] or known[:1])
+
+
+def _moved(values: Array) -> bool:
+    """Whether a variable took several values, but for what rounding makes of one."""
+    return bool(values.size) and bool(np.ptp(values) > ROUNDING * np.max(np.abs(values)))
 
 
 def _colored(figure: Figure, axes: Axes, at: Array, size: Array, name: str) -> None:

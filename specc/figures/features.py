@@ -18,6 +18,8 @@ SPEC: Final[dict[str, Any]] = {"color": BLUE, "linestyle": (0, (4, 1.5)), "linew
 ROBOT: Final[dict[str, Any]] = {"color": VERMILION, "linewidth": 1.8, "alpha": 0.9}
 ROOM: Final = 12.0
 """An axis shows at least so many tolerances, so that a hair's breadth does not look like a leap."""
+HAIR: Final = 1e-6
+"""What is thinner, as a share of its place, is no extent but rounding."""
 WORDS: Final = {
     FeatureStanding.EXCEEDED: "differs",
     FeatureStanding.UNDECIDED: "open",
@@ -95,7 +97,7 @@ def _word(axes: Axes, feature: ComparedFeature, at: Array) -> None:
 
 
 def _widened(axes: Axes, features: Features, scale: Array) -> None:
-    """Each axis at least `ROOM` tolerances of the points on it wide."""
+    """Each axis at least `ROOM` tolerances of its points wide, and none as thin as rounding."""
     allowed = [
         [number.tolerance for number in feature.numbers[:2]]
         for feature in features.features
@@ -107,7 +109,9 @@ def _widened(axes: Axes, features: Features, scale: Array) -> None:
         (axes.get_xlim(), ROOM * most[0], axes.set_xlim),
         (axes.get_ylim(), ROOM * most[1], axes.set_ylim),
     ):
-        more = max(0.0, 0.5 * (wide - (high - low)))
+        largest = max(abs(low), abs(high))
+        is_flat = not wide and high - low < HAIR * largest
+        more = max(0.0, 0.5 * ((largest if is_flat else wide) - (high - low)))
         put(low - more, high + more)
 
 

@@ -206,8 +206,8 @@ def limits_part(limits: Limits, prefix: str) -> Part:
     if limits.caught:
         caption = (
             "Faults planted into copies of this very trace, which were then judged like the trace"
-            " itself: a cross was caught (FAIL), a dot was not. The nearer the crosses come to the"
-            " left, the sharper this trace is."
+            " itself: a cross was caught (FAIL), a diamond left it open (INCONCLUSIVE), a dot"
+            " passed unseen. The nearer the crosses come to the left, the sharper this trace is."
         )
         figure = plotted(draw_caught(limits), f"{prefix}caught", caption)
         sentences = tuple(each.sentence for each in limits.caught)

@@ -168,15 +168,17 @@ def _losses(report: Report) -> Table | None:
 
 
 def _provenance(report: Report) -> tuple[tuple[str, str], ...]:
+    """What was judged, and how; of what has no horizon, or is certain, nothing of that."""
     trace = report.trace
+    confidence = f"{number(100.0 * report.confidence)} %"
     return (
         ("spec", f"{report.spec.name} ({report.spec.file})"),
         *([("spec text, SHA-256", report.spec.sha256)] if report.spec.sha256 else []),
         ("trace", trace.source),
         ("recorded", _when(trace)),
         ("length", f"{seconds(trace.duration)}, of which {seconds(trace.judged)} were judged"),
-        ("horizon", seconds(report.horizon)),
-        ("confidence", f"{number(100.0 * report.confidence)} %"),
+        *([("horizon", seconds(report.horizon))] if report.horizon else []),
+        *([("confidence", confidence)] if report.confidence < 1.0 else []),
         ("specc", __version__),
     )
 

@@ -14,6 +14,7 @@ from verifier.report.advice import CHECK_FIRST
 from verifier.report.report import Coverage, Standing, VariableResult, Verdict
 from verifier.report.situations import exceeded
 from verifier.report.wording import listed, number, percent, quantity, span
+from verifier.traces.trace import TICKS
 
 MOST_LOST = 0.1
 """With a larger share of predictions leaving the domain, there is no PASS."""
@@ -135,10 +136,16 @@ def _lost(evidence: Evidence) -> list[str]:
     ]
 
 
+def _times(clocks: tuple[str, ...]) -> str:
+    """Whose stamps the times are; a run's are the instants at which its nodes sample."""
+    said = ["the ticks of nodes" if clock == TICKS else f"{clock} stamps" for clock in clocks]
+    return f"times are {listed(said)}"
+
+
 def notes_of(evidence: Evidence, results: tuple[VariableResult, ...]) -> list[str]:
     """How the figures were made: clocks, windows, noise, losses on the way."""
     notes = [
-        f"times are {listed([*evidence.clocks])} stamps",
+        _times(evidence.clocks),
         f"{len(evidence.starts)} windows of {number(evidence.horizon)} s, one every half horizon",
     ]
     lost = int(np.sum(evidence.is_lost))
