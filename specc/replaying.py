@@ -52,6 +52,8 @@ def replayed(trace: Path | str, reading: Progress | None = None) -> Replay:
             lacks a quantity that is required (V394).
     """
     trace = Path(trace)
+    if not trace.exists():
+        raise fault("V301", trace, "there is no such file")
     carried = carried_by(trace)
     if carried is None or carried.document is None:
         raise fault("V393", trace, "this is not the recording of a scenario", "record it by "

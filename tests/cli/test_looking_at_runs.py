@@ -132,6 +132,14 @@ def test_what_is_no_recording_of_a_scenario_is_not_replayed(
     assert "error[V393]: this is not the recording of a scenario" in capfd.readouterr().err
 
 
+def test_a_recording_that_does_not_exist_is_told_as_that(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["replay", str(tmp_path / "none.mcap")]) == 2
+
+    assert "error[V301]: there is no such file" in capfd.readouterr().err
+
+
 def test_a_replay_on_a_pipe_is_lines_and_what_was_required(
     made: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
