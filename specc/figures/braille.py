@@ -72,6 +72,36 @@ class Canvas:
             self._letters[row, column] = letter
             self._styles[row][column] = style
 
+    def word(self, at: tuple[float, float], word: str, style: str = "", reach: float = 0.0) -> bool:
+        """A word upon, above, below, or beside a place, where nothing is drawn; whether it fits.
+
+        reach: how far what has this name reaches from its place.
+        """
+        column = round((at[0] - self._left) * self._scale) // 2
+        row = round((self._high - at[1]) * self._scale) // 4
+        middle = column - len(word) // 2
+        tall, wide = (max(math.ceil(0.7 * reach * self._scale / dots), 1) for dots in (4, 2))
+        places = [(row, middle)]
+        for more in range(2):
+            places += [(row - tall - more, middle), (row + tall + more, middle)]
+            places += [(row, column + wide + more), (row, column - wide - more - len(word) + 1)]
+        for top, first in places:
+            cells = [(top, first + place) for place in range(len(word))]
+            beside = {(top, first - 1), (top, first + len(word))}
+            if all(map(self._is_free, cells)) and not beside & self._letters.keys():
+                self._letters |= dict(zip(cells, word, strict=True))
+                for _, place in cells:
+                    self._styles[top][place] = style
+                return True
+        return False
+
+    def _is_free(self, cell: tuple[int, int]) -> bool:
+        """Whether a letter is on the canvas, and nothing is drawn there."""
+        row, column = cell
+        if not (0 <= row < self.rows and 0 <= column < self.columns) or cell in self._letters:
+            return False
+        return not self._dots[4 * row : 4 * row + 4, 2 * column : 2 * column + 2].any()
+
     def text(self) -> Text:
         """All of it, line by line."""
         blocks = self._dots.reshape(self.rows, 4, self.columns, 2)

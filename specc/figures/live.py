@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final, TypeAlias, final
 
-import numpy as np
 from rich.console import Console, RenderableType
 from rich.live import Live
 from rich.table import Table
@@ -15,7 +14,8 @@ from rich.text import Text
 
 from runtime.arrays import Array, Integers
 from specc.figures.braille import Canvas
-from specc.figures.footprints import outline, placed
+from specc.figures.footprints import lamps_at, outline, placed, reach_of
+from specc.figures.names import named_on_films
 from specc.figures.pace import Pace
 from specc.figures.quantities import number
 from specc.figures.scene import NOBODY, Scene
@@ -47,6 +47,7 @@ class View:
         self._plain = not console.encoding.lower().startswith("utf")
         self._things = [outline(item.shape, CORNERS) for item in scene.things]
         self._robots = [outline(item.shape, CORNERS) for item in scene.robots]
+        self._named = named_on_films(scene)
         self._size = (0, 0)
         self._still: Canvas | None = None
         self._ways: deque[tuple[float, Array, Integers]] = deque()
@@ -90,19 +91,29 @@ class View:
         for _, points, doers in self._ways:
             for robot, point in enumerate(points):
                 canvas.dots(point[None, :], self._style(robot, int(doers[robot])))
-        for lamp in self._scene.lamps:
-            pose = things[lamp.on] if lamp.on >= 0 else np.zeros(3)
-            x, y = placed(np.array([[lamp.x, lamp.y]]), pose)[0].tolist()
+        for x, y in lamps_at(self._scene, things).tolist():
             canvas.letter(x, y, "*", "bold bright_yellow")
         for robot, pose in enumerate(robots):
             style = self._style(robot, int(acting[robot]))
             for part in self._robots[robot]:
                 canvas.stroke(placed(part, pose), style, closed=True)
             x, y, heading = pose.tolist()
-            eighth = round(heading / (math.pi / 4.0)) % 8
-            canvas.letter(x, y, (PLAIN if self._plain else ARROWS)[eighth], f"bold {style}")
-            if len(robots) > 1:
-                canvas.letter(x, y, self._scene.robots[robot].name[:1], f"bold {style}", shift=1)
+            canvas.letter(x, y, self._arrow(heading), f"bold {style}")
+        self._name(canvas, things, robots, acting)
+
+    def _name(self, canvas: Canvas, things: Array, robots: Array, acting: Integers) -> None:
+        """Names, each where nothing else is drawn; first those of robots."""
+        for robot, (x, y, _) in enumerate(robots.tolist()):
+            style = f"bold {self._style(robot, int(acting[robot]))}"
+            reach = reach_of(self._robots[robot])
+            canvas.word((x, y), self._scene.robots[robot].name, style, reach)
+        for lamp, (x, y) in zip(
+            self._scene.lamps, lamps_at(self._scene, things).tolist(), strict=True
+        ):
+            canvas.word((x, y), lamp.name)
+        for index in self._named:
+            x, y, _ = things[index].tolist()
+            canvas.word((x, y), self._scene.things[index].name, "", reach_of(self._things[index]))
 
     def _beside(self, now: float, acting: Integers) -> Text:
         """The time, and who has its way in each robot."""
@@ -114,10 +125,16 @@ class View:
             name = "nobody" if doer == NOBODY else self._doers[robot][doer]
             text.append(f"{item.name}: ", "bold")
             text.append(f"{name}\n", self._style(robot, doer))
+        text.append(f"\n{self._arrow(0.0)}", "bold")
+        text.append(" robot")
         if self._scene.lamps:
             text.append("\n*", "bold bright_yellow")
             text.append(" light")
         return text
+
+    def _arrow(self, heading: float) -> str:
+        """A letter that points where a robot looks."""
+        return (PLAIN if self._plain else ARROWS)[round(heading / (math.pi / 4.0)) % 8]
 
     def _style(self, robot: int, doer: int) -> str:
         if doer == NOBODY:

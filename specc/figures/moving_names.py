@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from runtime.arrays import Array
 from specc.figures.footprints import lamps_at, outline, placed, reach_of
 from specc.figures.labels import ROOM, Box, Words, meets_polygon
-from specc.figures.names import MOST, STAR
+from specc.figures.names import STAR, named_on_films
 from specc.figures.palettes import Palette
 from specc.figures.scene import Scene
 
@@ -27,12 +27,6 @@ SIDES: Final = ((0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0))
 GAP: Final = 2.0
 """Points between what has a name and the name."""
 CORNERS: Final = 20
-
-
-def named_on_films(scene: Scene) -> list[int]:
-    """Which things have names: all, where they are few, else those that are spoken of."""
-    are_few = len(scene.things) <= MOST
-    return [i for i, item in enumerate(scene.things) if are_few or item.name in scene.spoken]
 
 
 @final

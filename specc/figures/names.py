@@ -33,6 +33,12 @@ def named_things(scene: Scene, trails: Trails) -> list[int]:
     return sorted([*spoken, *pushed[: max(MOST - len(spoken), 0)]])
 
 
+def named_on_films(scene: Scene) -> list[int]:
+    """Which things have names: all, where they are few, else those that are spoken of."""
+    are_few = len(scene.things) <= MOST
+    return [i for i, item in enumerate(scene.things) if are_few or item.name in scene.spoken]
+
+
 def keep_clear(labels: Labels, scene: Scene, trails: Trails) -> None:
     """What words may not cover: robots where they were first and last, and lights.
 

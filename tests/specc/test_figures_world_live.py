@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from rich.console import Console
 
 from runtime.arrays import Array, Integers
@@ -60,6 +62,33 @@ def test_what_is_outside_is_not_drawn() -> None:
     canvas.letter(9.0, 9.0, "x")
 
     assert canvas.text().plain.strip() == ""
+
+
+@given(st.integers(0, 2**32 - 1), st.lists(st.text("abc", min_size=1, max_size=8), max_size=9))
+def test_words_take_only_places_where_nothing_was(seed: int, words: list[str]) -> None:
+    chance = np.random.default_rng(seed)
+    canvas = Canvas(20, 10, (0.0, 0.0, 2.0, 2.0), ascii_only=False)
+    canvas.dots(chance.uniform(0.0, 2.0, (30, 2)))
+    before, written = canvas.text().plain, 0
+
+    for word in words:
+        x, y = chance.uniform(0.0, 2.0, 2).tolist()
+        written += len(word) * canvas.word((x, y), word, reach=0.1)
+
+    changed = [(a, b) for a, b in zip(before, canvas.text().plain, strict=True) if a != b]
+    assert all(a == " " and b in "abc" for a, b in changed)
+    assert len(changed) == written
+
+
+def test_robots_lights_and_things_have_their_names() -> None:
+    console, _ = terminal(120, 40)
+    run, out = trails(), StringIO()
+    moment = View(scene(), run.doers, console).at(1.0, run.things[0], run.robots[0], run.acting[0])
+
+    Console(file=out, width=120, height=40, color_system=None).print(moment)
+
+    words = set(re.findall(r"\w+", out.getvalue()))
+    assert {"bulb", "torch", "desk", "crate", "r"} <= words
 
 
 @pytest.mark.parametrize("size", [(80, 24), (44, 8), (30, 6), (200, 60)])
