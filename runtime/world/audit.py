@@ -86,6 +86,7 @@ class Auditor:
 
     Attributes:
         depth: the deepest yet (m).
+        every: how many steps after one another it is to look.
     """
 
     def __init__(
@@ -95,8 +96,8 @@ class Auditor:
         self._names = names
         self._motors = motors
         self._first = len(names) - 1 - len(motors)
-        self._every = max(round(LOOK / step), 1)
-        self._seconds = self._every * step
+        self.every = max(round(LOOK / step), 1)
+        self._seconds = self.every * step
         self.depth, self._pair, self._time = 0.0, ("", ""), 0.0
         self._find = [finder(body) for body in space.bodies[self._first :]]
         self._poses = [find() for find in self._find]
@@ -111,17 +112,13 @@ class Auditor:
             worst = max(self._space.touches(), key=lambda touch: touch.depth)
             self._pair = (self._names[worst.a], self._names[worst.b])
 
-    def look(self, steps: int, time: float, seconds: float) -> None:
-        """Look at the robots after so many steps, the last part of which took `seconds`."""
-        if steps % self._every == 0:
-            self._look(time, seconds)
-
     def found(self) -> Audit:
         """What was found up to now; a jam that lasts ends now."""
         jams = sorted((*self._jams, *self._open.values()), key=lambda jam: (jam.begin, jam.robot))
         return Audit(self.depth, self._pair, self._time, tuple(jams))
 
-    def _look(self, time: float, step: float) -> None:
+    def look(self, time: float, part: float) -> None:
+        """Look at the robots, every so many steps; the last part of a step took so many seconds."""
         held = _held(self._space.touches(), self._first)
         for robot, motor in enumerate(self._motors):
             before = self._poses[robot]
@@ -132,7 +129,7 @@ class Auditor:
                 _Look(
                     commanded=(math.hypot(forward, left), abs(turn)),
                     done=(math.hypot(x - before[0], y - before[1]), abs(heading - before[2])),
-                    force=impulse / step,
+                    force=impulse / part,
                     thing=thing,
                 )
             )

@@ -32,26 +32,29 @@ def stepper(space: pymunk.Space) -> Callable[[float], None]:
 
 
 def aimer(body: pymunk.Body) -> Callable[[float, float], None]:
-    """What sets the velocity of a body to (x, y)."""
-    raw, aim = body._body, C.cpBodySetVelocity  # noqa: SLF001 (see above)
-    return lambda x, y: aim(raw, (x, y))
+    """What sets the velocity of a kinematic body to (x, y); one that may sleep must be woken."""
+    numbers = _numbers(body)
+
+    def aim(x: float, y: float) -> None:
+        numbers[memory.VELOCITY], numbers[memory.VELOCITY + 1] = x, y
+
+    return aim
 
 
 def compass(body: pymunk.Body) -> Callable[[float], float]:
     """What tells the heading at which a body will be in so many seconds, as it turns now."""
-    raw, heading, turn = body._body, C.cpBodyGetAngle, C.cpBodyGetAngularVelocity  # noqa: SLF001
-    return lambda seconds: heading(raw) + turn(raw) * seconds
+    numbers = _numbers(body)
+    return lambda seconds: numbers[memory.HEADING] + numbers[memory.TURN] * seconds
 
 
 def finder(body: pymunk.Body) -> Callable[[], tuple[float, float, float]]:
     """What tells where the origin of a body is, and its heading."""
-    raw, place, heading = body._body, C.cpBodyGetPosition, C.cpBodyGetAngle  # noqa: SLF001
-
-    def find() -> tuple[float, float, float]:
-        at = place(raw)
-        return at.x, at.y, heading(raw)
-
-    return find
+    numbers = _numbers(body)
+    return lambda: (
+        numbers[memory.PLACE],
+        numbers[memory.PLACE + 1],
+        numbers[memory.HEADING],
+    )
 
 
 def feel_evenly(body: pymunk.Body) -> None:
@@ -133,6 +136,12 @@ def _address(of: Any) -> int:
 def _words(of: Any, count: int) -> Integers:
     """So many words of 8 bytes from where a structure begins, as they are now."""
     return np.frombuffer(bytes(ffi.buffer(ffi.cast("char *", of), 8 * count)), dtype=np.int64)
+
+
+def _numbers(body: pymunk.Body) -> "memoryview[float]":
+    """The memory of a body itself, as real numbers; who keeps them keeps the body there."""
+    make_sure()
+    return memoryview(ffi.buffer(body._body, 8 * memory.JOINTS)).cast("d")  # noqa: SLF001
 
 
 @final
