@@ -7,6 +7,7 @@ from compiler.check_ways import check_ways
 from compiler.claims import lower_claims
 from compiler.declare import Declarations, declare
 from compiler.findings import Findings
+from compiler.finite import check_finite
 from compiler.lower_parts import (
     lower_bindings,
     lower_fidelity,
@@ -59,6 +60,8 @@ def check_behavior(loaded: Loaded, spec: BehaviorSpec) -> Checked:
     check_moved_values(spec, findings)
     if isinstance(spec.field.form, Modes) and not findings.has_errors:
         check_ways(spec.field.form, expressions.ways, declared, findings)
+    if not findings.has_errors:
+        check_finite(spec, declared, expressions.rates, findings)
     design = None
     if expressions.drawing is not None and not findings.has_errors:
         design = designed(expressions.drawing, declared, findings)

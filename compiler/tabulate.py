@@ -12,6 +12,7 @@ from typing import TypeAlias, final
 
 import numpy as np
 
+from compiler.finite import REMEDY, not_finite
 from compiler.ranges import Range
 from runtime.arrays import Array
 from runtime.interpolation import lookup, tabulate
@@ -97,14 +98,8 @@ def _finite(wanted: Wanted) -> Sampler:
         bad = ~np.isfinite(values).all(axis=-1)
         if bad.any():
             place = points[np.argmax(bad)]
-            at = ", ".join(f"{r.name} = {x:.6g}" for r, x in zip(wanted.ranges, place, strict=True))
-            raise TableError(
-                "S243",
-                None,
-                f"the field is not finite at {at} (SI units)",
-                "shrink the domain so that it leaves this place out, or guard the expression "
-                "with `where(...)` or `max(...)`",
-            )
+            message = not_finite([r.name for r in wanted.ranges], place.tolist())
+            raise TableError("S243", None, message, REMEDY)
         return values
 
     return sample
