@@ -93,30 +93,26 @@ def _in_effect(
 
 
 def _of_board(robot: str, signal: Signal, times: Array, values: Array) -> Quantity:
-    return Quantity(
-        name=f"{robot}.{signal.name}",
-        unit=signal.unit,
-        kind=signal.kind,
-        labels=signal.values,
-        low=signal.low,
-        high=signal.high,
-        is_held=True,
-        times=times,
-        values=values,
-    )
+    return _held(f"{robot}.{signal.name}", signal, times, values)
 
 
 def _of_state(name: str, state: State, times: Array, values: Array) -> Quantity:
+    turns = state.kind is Kind.PERIODIC
+    return _held(name, state, times, wrapped(values, state.low, state.high) if turns else values)
+
+
+def _held(name: str, what: Signal | State, times: Array, values: Array) -> Quantity:
+    """What stays until something else is said."""
     return Quantity(
         name=name,
-        unit=state.unit,
-        kind=state.kind,
-        labels=state.values,
-        low=state.low,
-        high=state.high,
+        unit=what.unit,
+        kind=what.kind,
+        labels=what.values,
+        low=what.low,
+        high=what.high,
         is_held=True,
         times=times,
-        values=wrapped(values, state.low, state.high) if state.kind is Kind.PERIODIC else values,
+        values=values,
     )
 
 
