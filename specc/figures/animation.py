@@ -132,7 +132,8 @@ def _gif(film: Iterator[Image.Image], count: int, rate: float, palette: Palette)
 def _table(first: Image.Image, palette: Palette) -> Image.Image:
     """The colours of a GIF: what may move has its own, small as it is in the first frame."""
     looks = [str(look_of(place, palette)["color"]) for place in range(NOBODY, len(DOERS))]
-    named = [*looks, palette.ink, palette.paper, palette.tints[5], LAMP]
+    sensed = [palette.stable, palette.alarm]
+    named = [*looks, *sensed, palette.ink, palette.paper, palette.tints[5], LAMP]
     own = [round(255 * part) for color in named for part in to_rgb(color)]
     rest = first.quantize(COLORS - len(named), dither=Image.Dither.NONE).getpalette() or []
     table = Image.new("P", (1, 1))
