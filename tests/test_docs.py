@@ -25,6 +25,7 @@ from spec_schema.model_walk import keys_at
 from spec_schema.node import plain
 from spec_schema.source import Source
 from spec_schema.yaml_reader import read
+from specc.cli import main
 from tests.study import agents
 
 ROOT = Path(__file__).parents[1]
@@ -93,6 +94,24 @@ def test_an_example_of_the_language_has_no_error(place: str, beside: Path) -> No
     assert not [d for d in found if d.severity is Severity.ERROR], render(found)
     if RESHAPING & as_data(text).keys():
         compile_file(path, lambda _what, _done, _of: None, allow_code=True)
+
+
+@pytest.mark.usefixtures("beside")
+def test_the_scenario_of_the_page_runs_with_the_python_that_it_shows(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["simulate", "first_try.yaml", "--allow-code", "-d", "1 s"]) in {0, 1, 4}
+
+    assert "first_try: 1 s simulated, seed 7" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("beside")
+def test_no_example_has_the_name_of_another_spec_of_the_library() -> None:
+    ours = {path.stem for path in Path().glob("*.yaml")}
+    library = {path.stem for path in (ROOT / "specs").rglob("*.yaml")}
+
+    assert {"rover", "to_the_lamp", "first_try"} <= ours
+    assert ours & library == set()
 
 
 @pytest.mark.parametrize("place", EXAMPLES)
