@@ -72,8 +72,9 @@ study-senses: .venv/ready ## how fast rays, light meters and maps of light are
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.senses
 
 study-paradigms: .venv/ready ## three tasks by three paradigms of the same behaviors, beside chance
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms light --first 1070 --worlds 50
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms patrol tidy --first 1020 --worlds 50
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms light --first 1120 --worlds 50
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms patrol --first 1070 --worlds 50
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms tidy --first 1040 --worlds 50
 
 bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
