@@ -122,14 +122,15 @@ class Note:
 class Labels:
     """The words on one floor; each lies where nothing was that must not be covered."""
 
-    def __init__(self, axes: Axes) -> None:
-        """The axes have their limits and their place on the paper."""
+    def __init__(self, axes: Axes, arena: Array) -> None:
+        """The axes have their limits and their place on the paper; words stay in the arena's box.
+
+        arena: (k, 2) its corners.
+        """
         self._axes, self._scale = axes, 72.0 / axes.figure.dpi
-        (left, low), (right, high) = self._on_paper(
-            np.array([[axes.get_xlim()[0], axes.get_ylim()[0]],
-                      [axes.get_xlim()[1], axes.get_ylim()[1]]])
-        ).tolist()  # fmt: skip
-        self._paper = Box(left, low, right, high)
+        low, high = self._on_paper(np.array([arena.min(axis=0), arena.max(axis=0)]))
+        self._paper = Box(*low.tolist(), *high.tolist())
+        self._metre = float((high - low)[0] / np.ptp(arena[:, 0]))
         self._taken: list[Box] = []
         self._bodies: list[Array] = []
         self._things: list[Array] = []
@@ -138,8 +139,7 @@ class Labels:
     @property
     def per_metre(self) -> float:
         """Points of the paper for a metre of the floor."""
-        left, right = self._axes.get_xlim()
-        return (self._paper.right - self._paper.left) / (right - left)
+        return self._metre
 
     def keep_off(self, polygons: Iterable[Array]) -> None:
         """Convex polygons (n, 2) of the floor that no words may cover."""

@@ -70,7 +70,7 @@ def draw_world(scene: Scene, trails: Trails, style: Style = Style.SCREEN) -> Fig
         floor(axes, scene)
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
-        labels = Labels(axes)
+        labels = Labels(axes, scene.arena)
         since = fresh_since(scene, trails, labels.per_metre)
         entries = [*_things(axes, scene, trails, palette), *_robots(axes, scene, trails, palette)]
         entries += _lamps(axes, scene, trails.things[-1], palette)
