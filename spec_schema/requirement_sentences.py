@@ -29,6 +29,8 @@ from spec_schema.wording import quoted
 SECOND: Final = parse_unit("s")
 DEEPEST: Final = 40
 """Formulas within formulas."""
+IF: Final = "write e.g. `if r.x > 1 m then r.speed == 0 m/s`"
+FROM: Final = "write e.g. `from 5 s to 60 s`"
 
 
 @final
@@ -153,7 +155,7 @@ class _Reading:
             return self._joined("or", depth)[0]
         premise = self._joined("or", depth)[0]
         if not self._take("then"):
-            raise self._fault("S370", f"after `if ...` comes `then`, not {self._shown()}", "")
+            raise self._fault("S370", f"after `if ...` comes `then`, not {self._shown()}", IF)
         return Compound("implies", (premise, self.formula(depth + 1)))
 
     def end(self) -> None:
@@ -163,7 +165,8 @@ class _Reading:
             return
         if word.text in WINDOWS:
             raise self._misplaced_window()
-        remedy = "join two by `and`, `or` or `until`"
+        joined = "join two by `and`, `or` or `until`"
+        remedy = "remove it, or open a bracket" if word.text == ")" else joined
         raise self._fault("S370", f"the sentence should end before {self._shown()}", remedy)
 
     def _joined(self, word: str, depth: int) -> tuple[Sentence, bool]:
@@ -200,7 +203,9 @@ class _Reading:
             self._next += 1
             inner = self.formula(depth + 1)
             if not self._take(")"):
-                raise self._fault("S370", f"a bracket should close before {self._shown()}", "")
+                raise self._fault(
+                    "S370", f"a bracket should close before {self._shown()}", "add ')'"
+                )
             return inner, False
         return self._predicate(), False
 
@@ -215,7 +220,7 @@ class _Reading:
             return 0.0, None
         first = self._time()
         if not self._take("to"):
-            raise self._fault("S373", f"after `from` comes `to`, not {self._shown()}", "")
+            raise self._fault("S373", f"after `from` comes `to`, not {self._shown()}", FROM)
         last = self._time()
         if last <= first:
             assert word is not None, "`from` was read"

@@ -126,3 +126,20 @@ def test_deep_nesting_is_refused() -> None:
         read_requirement("not " * 500 + "a.x > 1")
     with pytest.raises(RequirementError):
         read_requirement("(" * 100 + "a.x > 1" + ")" * 100)
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("always r.x > 1 m)", "remove it, or open a bracket"),
+        ("always (r.x > 1 m and r.x < 2 m", "add ')'"),
+        ("if r.x > 1 m", "write e.g. `if r.x > 1 m then r.speed == 0 m/s`"),
+        ("always from 5 s r.x > 1 m", "write e.g. `from 5 s to 60 s`"),
+        ("always r.x > .nan", "compare quantities and finite numbers, as in `r.clearance > 5 cm`"),
+    ],
+)
+def test_a_sentence_that_is_none_says_what_to_write(text: str, remedy: str) -> None:
+    with pytest.raises(RequirementError) as refused:
+        read_requirement(text)
+
+    assert remedy in {fault.help for fault in refused.value.faults}
