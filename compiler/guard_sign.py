@@ -15,8 +15,10 @@ DUAL: Final = {"and": "or", "or": "and"}
 EXTREME: Final = {"and": "min", "or": "max"}
 
 
-def signed(condition: Expr, discrete: Collection[str]) -> Expr | None:
+def signed(condition: Expr, discrete: Collection[str], tie: float = 0.0) -> Expr | None:
     """The signed form of a condition; None where it is not made of comparisons.
+
+    tie: what `>` and `<` ask for beyond equality, so that a tie is below 0.
 
     >>> from spec_schema.expressions.parse import parse
     >>> from spec_schema.expressions.printers.text import to_text
@@ -27,17 +29,21 @@ def signed(condition: Expr, discrete: Collection[str]) -> Expr | None:
     match condition:
         case Apply(op=op, operands=operands) if _is_stepped(op, operands, discrete):
             return Apply("where", (condition, Number(1.0), Number(-1.0)))
-        case Apply(op="ge" | "gt", operands=(a, b)):
-            return Apply("sub", (a, b))
-        case Apply(op="le" | "lt", operands=(a, b)):
-            return Apply("sub", (b, a))
+        case Apply(op="ge" | "gt" as op, operands=(a, b)):
+            return _beyond(Apply("sub", (a, b)), tie if op == "gt" else 0.0)
+        case Apply(op="le" | "lt" as op, operands=(a, b)):
+            return _beyond(Apply("sub", (b, a)), tie if op == "lt" else 0.0)
         case Apply(op="and" | "or" as op, operands=(a, b)):
-            left, right = signed(a, discrete), signed(b, discrete)
+            left, right = signed(a, discrete, tie), signed(b, discrete, tie)
             return None if left is None or right is None else Apply(EXTREME[op], (left, right))
         case Apply(op="not", operands=(inner,)):
             opposite = _negated(inner)
-            return None if opposite is None else signed(opposite, discrete)
+            return None if opposite is None else signed(opposite, discrete, tie)
     return None
+
+
+def _beyond(difference: Expr, tie: float) -> Expr:
+    return Apply("sub", (difference, Number(tie))) if tie else difference
 
 
 def _is_stepped(op: str, operands: tuple[Expr, ...], discrete: Collection[str]) -> bool:

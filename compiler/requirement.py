@@ -27,6 +27,8 @@ from spec_schema.suggest import did_you_mean
 from spec_schema.units import Unit, parse_quantity
 from spec_schema.wording import number
 
+TIE: Final = 2e-9
+"""In SI: `a > b` does not hold at a = b. Twice of what counts as rounding when a run is judged."""
 MOST_NAMED: Final = 6
 """How many quantities a help lists."""
 
@@ -117,7 +119,8 @@ def _margin(
         return None, None, [*faults, *more, *([fault] if names <= {*known, *quantities} else [])]
     dimension = None if faults else dimension_of(margin, dimensions)[0]
     numbers = {name: Number(one.value) for name, one in quantities.items()}
-    return substitute(margin, numbers), dimension, [*faults, *more]
+    strict = signed(resolved, discrete, TIE) or margin
+    return substitute(strict, numbers), dimension, [*faults, *more]
 
 
 def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -> Fault:

@@ -37,7 +37,8 @@ class Operator(StrEnum):
 class Formula:
     """A formula in postfix order: each part says how many parts before it are its own.
 
-    margin: of a PREDICATE, code whose value is its robustness: 0 or more where it holds.
+    margin: of a PREDICATE, code whose value is its robustness: 0 or more where it holds, and below
+    it by a few nanounits where `>` or `<` meets equality.
     first, last: the window of a temporal operator, in seconds from now; last is infinite (None)
     for the rest of the run.
     """

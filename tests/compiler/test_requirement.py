@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 from compiler.findings import Findings
@@ -10,6 +11,9 @@ from runtime.requirement import Operator, Requirement
 from spec_schema.load import load_source
 from spec_schema.source import Source
 from spec_schema.units import parse_unit
+from verifier.report.requirement_results import Outcome
+from verifier.requirements.judge import judge_requirements
+from verifier.requirements.signals import Signal
 
 KNOWN = {
     "r.clearance": Measured(parse_unit("m").dimension),
@@ -37,8 +41,8 @@ def lowered() -> Callable[[str], tuple[Requirement | None, list[str]]]:
 @pytest.mark.parametrize(
     ("text", "code", "unit"),
     [
-        ("r.clearance > 5 cm", "r.clearance 0.05 sub", "cm"),
-        ("r.clearance < r.x", "r.x r.clearance sub", "m"),
+        ("r.clearance > 5 cm", "r.clearance 0.05 sub 2e-09 sub", "cm"),
+        ("r.clearance < r.x", "r.x r.clearance sub 2e-09 sub", "m"),
         ("r.light <= 2 lx", "2 r.light sub", "lx"),
         ("r.choose.choice == 'go'", "r.choose.choice 1 eq 1 -1 where", "1"),
         ("r.bumper.hit != 1", "r.bumper.hit 1 ne 1 -1 where", "1"),
@@ -54,6 +58,29 @@ def test_a_margin_is_in_si_and_positive_where_it_holds(
     assert found.formula[0].margin is not None
     assert found.formula[0].margin.text == code
     assert found.unit == unit
+
+
+@pytest.mark.parametrize(
+    ("text", "outcome"),
+    [
+        ("always r.clearance > 5 cm", Outcome.VIOLATED),
+        ("always r.clearance >= 5 cm", Outcome.SATISFIED),
+        ("always 5 cm < r.clearance", Outcome.VIOLATED),
+        ("always r.clearance <= 5 cm", Outcome.SATISFIED),
+        ("eventually not r.clearance > 5 cm", Outcome.SATISFIED),
+    ],
+)
+def test_what_is_at_its_bound_is_not_beyond_it(
+    lowered: Callable[[str], tuple[Requirement | None, list[str]]], text: str, outcome: Outcome
+) -> None:
+    found, _ = lowered(text)
+    assert found is not None
+    touching = Signal("r.clearance", np.array([0.0, 1.0, 2.0]), np.array([0.05, 0.05, 0.05]))
+
+    (judged,) = judge_requirements([found], {"r.clearance": touching})
+
+    assert judged.outcome is outcome
+    assert "exactly at its bound" in judged.sentence
 
 
 def test_parts_stand_before_what_joins_them(

@@ -20,6 +20,8 @@ from verifier.requirements.witness import Deciding, deciding, lowest_within, pas
 
 ROUNDING: Final = 1e-9
 """In SI: so little below 0 is 0."""
+TIED: Final = 3 * ROUNDING
+"""In SI: so near to 0 is at the bound; `>` and `<` ask for a little more than equality."""
 BARE: Final = Unit("1", 1.0)
 WINDOW: Final = re.compile(r"^(?:(?:within|after) \S+ ?[a-z]+|from \S+ ?[a-z]+ to \S+ ?[a-z]+)\s+")
 WORD: Final = re.compile(r"[()]|\buntil\b")
@@ -179,14 +181,16 @@ def _by(result: RequirementResult) -> str:
     robustness, unit = abs(result.robustness), result.unit
     if not unit.text or math.isinf(robustness):
         return ""
-    if robustness <= ROUNDING:
-        return ", but exactly at its bound,"
+    if robustness <= TIED:
+        is_met = result.outcome is Outcome.SATISFIED
+        return f", {'but ' if is_met else ''}exactly at its bound,"
     return f" by {quantity(robustness, unit)}"
 
 
 def _shown(name: str, time: float, told: Told) -> str:
     signal = told.signals[name]
     value = value_at(signal, time)
+    value = 0.0 if abs(value) <= TIED else value
     if not signal.labels:
         return f"{name} is {quantity(value, told.units.get(name, BARE))}"
     is_one = value >= 0.0
