@@ -28,18 +28,18 @@ if TYPE_CHECKING:
     from specc.recorded import record_run as record_run
     from specc.reported import write_report as write_report
     from specc.reported import write_reports as write_reports
-    from specc.run_pictures import draw_run as draw_run
-    from specc.run_pictures import film_run as film_run
     from specc.running import simulate as simulate
-    from specc.runs import Runs as Runs
-    from specc.runs import verify_each as verify_each
-    from specc.runs import verify_together as verify_together
-    from specc.simulating import Simulation as Simulation
-    from specc.simulating import simulate_scenario as simulate_scenario
-    from specc.verifying import Verification as Verification
-    from specc.verifying import verify as verify
-    from specc.verifying_recording import RunVerification as RunVerification
-    from specc.verifying_recording import verify_run as verify_run
+    from specc.scenarios.pictures import draw_run as draw_run
+    from specc.scenarios.pictures import film_run as film_run
+    from specc.scenarios.simulating import Simulation as Simulation
+    from specc.scenarios.simulating import simulate_scenario as simulate_scenario
+    from specc.verifying.recording import RunVerification as RunVerification
+    from specc.verifying.recording import verify_run as verify_run
+    from specc.verifying.runs import Runs as Runs
+    from specc.verifying.runs import verify_each as verify_each
+    from specc.verifying.runs import verify_together as verify_together
+    from specc.verifying.trace import Verification as Verification
+    from specc.verifying.trace import verify as verify
     from verifier.report.report import Report as Report
     from verifier.report.report import Verdict as Verdict
     from verifier.topology.branches.continuation import Branches as Branches
@@ -55,7 +55,7 @@ HOMES = {
     "Rollout": "runtime.rollout",
     "Diagnostic": "spec_schema.diagnostics",
     "SpecError": "spec_schema.diagnostics",
-    "Verification": "specc.verifying",
+    "Verification": "specc.verifying.trace",
     "check": "compiler.check",
     "check_claims": "specc.claiming",
     "compare_behaviors": "specc.comparing",
@@ -66,14 +66,14 @@ HOMES = {
     "portrait": "specc.portraying",
     "sweep": "specc.portraying",
     "simulate": "specc.running",
-    "Simulation": "specc.simulating",
-    "simulate_scenario": "specc.simulating",
+    "Simulation": "specc.scenarios.simulating",
+    "simulate_scenario": "specc.scenarios.simulating",
     "record_run": "specc.recorded",
-    "draw_run": "specc.run_pictures",
-    "film_run": "specc.run_pictures",
-    "verify": "specc.verifying",
-    "verify_run": "specc.verifying_recording",
-    "RunVerification": "specc.verifying_recording",
+    "draw_run": "specc.scenarios.pictures",
+    "film_run": "specc.scenarios.pictures",
+    "verify": "specc.verifying.trace",
+    "verify_run": "specc.verifying.recording",
+    "RunVerification": "specc.verifying.recording",
     "fit": "specc.fitting.fit",
     "Fitted": "specc.fitting.fitted",
     "write_artifact": "specc.loading",
@@ -81,9 +81,9 @@ HOMES = {
     "record": "specc.recorded",
     "write_report": "specc.reported",
     "write_reports": "specc.reported",
-    "verify_each": "specc.runs",
-    "verify_together": "specc.runs",
-    "Runs": "specc.runs",
+    "verify_each": "specc.verifying.runs",
+    "verify_together": "specc.verifying.runs",
+    "Runs": "specc.verifying.runs",
     "Report": "verifier.report.report",
     "Verdict": "verifier.report.report",
     "Comparison": "verifier.topology.comparing.comparison",

@@ -10,7 +10,10 @@ from specc import __version__
 from specc.files import json_bytes, unknown_suffix, write_atomically
 from specc.pages.report_page import report_page
 from specc.pages.runs_page import runs_page
-from specc.runs import (
+from specc.texts.runs import runs_text
+from specc.verifying.architecture import NotJudged
+from specc.verifying.recording import RunVerification
+from specc.verifying.runs import (
     Outcome,
     Runs,
     Unusable,
@@ -20,11 +23,8 @@ from specc.runs import (
     unusable,
     verifications,
 )
-from specc.runs_record import record_of
-from specc.texts.runs import runs_text
-from specc.verifying import Verification
-from specc.verifying_architecture import NotJudged
-from specc.verifying_recording import RunVerification
+from specc.verifying.runs_record import record_of
+from specc.verifying.trace import Verification
 from verifier.report.examination_text import examination_text
 from verifier.report.findings import Finding, Level, Rule, findings_of
 from verifier.report.junit import as_junit

@@ -35,7 +35,7 @@ def replay(
 
     `specc replay run.mcap --watch --speed 4`
     """
-    from specc.replaying import replayed
+    from specc.scenarios.replaying import replayed
     from specc.texts.simulation import replay_text
 
     pictures = Pictures(poster, film, speed, style)
@@ -47,7 +47,7 @@ def replay(
             pictures.draw(found.scene, found.trails, bar)
         pictures.tell_written()
     if watch or not pictures.are_wanted:
-        from specc.watching import rewatch
+        from specc.scenarios.watching import rewatch
 
         rewatch(found.scene, found.trails, messages(), speed=speed or 1.0, style=style)
     print_text(replay_text(found))

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from runtime.scenario import Scenario
-    from specc.simulating import Simulation
-    from specc.watching import Onlooker
+    from specc.scenarios.simulating import Simulation
+    from specc.scenarios.watching import Onlooker
 
 LIGHT_EVERY: Final = 1.0
 """Seconds between two pictures of the light on the floor."""
@@ -75,7 +75,7 @@ def _unwatched(scenario: "Scenario", wanted: Wanted) -> tuple["Simulation", floa
 
 def _watched(scenario: "Scenario", wanted: Wanted) -> "Simulation":
     """The run while it is looked at, at the speed that is wanted."""
-    from specc.watching import watching
+    from specc.scenarios.watching import watching
 
     with watching(
         scenario, messages(), speed=wanted.pictures.speed or 1.0, style=wanted.pictures.style
@@ -89,7 +89,7 @@ def _simulated(
     tell: "Callable[[str, int, int], None] | None" = None,
     onlooker: "Onlooker | None" = None,
 ) -> "Simulation":
-    from specc.simulating import simulate_scenario
+    from specc.scenarios.simulating import simulate_scenario
 
     keeps_light = wanted.output is not None or wanted.pictures.are_wanted
     return simulate_scenario(
@@ -106,8 +106,8 @@ def _simulated(
 
 def _write(made: "Simulation", wanted: Wanted) -> None:
     """The recording first: who interrupts a film keeps it."""
-    from specc.pictured import pictured
     from specc.recorded import record_run
+    from specc.scenarios.pictured import pictured
 
     if wanted.output is not None:
         with progress_bar("recording") as bar:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from specc.cli.console import Bar
-    from specc.runs import Outcome, Runs
+    from specc.verifying.runs import Outcome, Runs
 
 READING: Final = "reading"
 """The phase in which bytes are counted."""
@@ -67,7 +67,7 @@ def verify(
 
     `specc verify drive.mcap --format json > verdict.json`
     """
-    from specc.runs import distinct, verify_each
+    from specc.verifying.runs import distinct, verify_each
 
     _refuse_early(output)
     given, traces = traces, [Path(each) for each in distinct(traces)]
@@ -113,7 +113,7 @@ def _told(
     Raises:
         SpecError: the only recording can't be used.
     """
-    from specc.runs import Unusable, runs_of
+    from specc.verifying.runs import Unusable, runs_of
 
     if len(traces) == 1 and outcomes and isinstance(outcomes[0], Unusable):
         raise outcomes[0].error
@@ -141,7 +141,7 @@ def _judged(judge: "Callable[..., Iterator[Outcome]]", count: int) -> "tuple[lis
 
 
 def _recordings(outcomes: "Sequence[Outcome]") -> int:
-    from specc.runs import recording_of
+    from specc.verifying.runs import recording_of
 
     return len({recording_of(each) for each in outcomes})
 
@@ -171,9 +171,9 @@ class _Watch:
 
 def _print(runs: "Runs", form: ReportFormat) -> None:
     from specc.reported import findings_by_source
-    from specc.runs import verifications
-    from specc.runs_record import record_of
     from specc.texts.runs import told_text
+    from specc.verifying.runs import verifications
+    from specc.verifying.runs_record import record_of
     from verifier.report.annotations import as_annotations
 
     match form:
@@ -198,7 +198,7 @@ def _write(runs: "Runs", output: Sequence[Path]) -> None:
 
 def _status(runs: "Runs") -> int:
     """2 where a recording can't be used, else that of the verdict on all."""
-    from specc.runs import unusable
+    from specc.verifying.runs import unusable
 
     if unusable(runs.outcomes):
         return Status.BAD_INPUT

@@ -30,9 +30,10 @@ Format: TypeAlias = Literal["svg", "png", "pdf"]
 Picture: TypeAlias = Figure
 """A drawn figure, for those who pass it on and need not know matplotlib."""
 
+FAMILY: Final = ["DejaVu Sans"]
 FONT: Final = {
     "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
+    "font.sans-serif": FAMILY,
     "mathtext.fontset": "dejavusans",
     "font.size": 9.0,
     "axes.titlesize": 11.0,

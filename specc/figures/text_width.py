@@ -6,7 +6,7 @@ from typing import Final
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from specc.figures.style import FONT
+from specc.figures.style import FAMILY
 
 POINTS: Final = 72.0
 """In an inch."""
@@ -21,8 +21,6 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
     """
     if not text.strip():
         return 0.0
-    font = FontProperties(
-        family=FONT["font.sans-serif"], size=size, weight="bold" if bold else "normal"
-    )
+    font = FontProperties(family=FAMILY, size=size, weight="bold" if bold else "normal")
     path = TextPath((0.0, 0.0), text, prop=font, usetex=False)
     return float(path.get_extents().x1) / POINTS

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final, TypeAlias, final
 
 from runtime.program import Program
-from specc.verifying import Clock
+from specc.verifying.trace import Clock
 from verifier.fidelity.shooting.study import Study
 from verifier.fidelity.verify import judgement_of
 from verifier.report.report import Report

@@ -22,8 +22,8 @@ from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
 from specc.fitting.reading import aims_of
 from specc.fitting.weighing import Weighed, as_good, passed_over, weighed
-from specc.spec_finding import find_spec
-from specc.verifying import Clock, behavior_for_verify, refuse_code
+from specc.verifying.spec_finding import find_spec
+from specc.verifying.trace import Clock, behavior_for_verify, refuse_code
 from verifier.diagnosis.diagnose import diagnose
 from verifier.report.diagnosis import Diagnosis
 from verifier.report.report import Report, Standing, Verdict

@@ -8,9 +8,9 @@ from specc.figures.quantities import number, seconds
 from specc.pages.page import Page, RunRow, RunsPage, RunsTable
 from specc.pages.report_page import SIGNS, gathered, rendered
 from specc.pages.scenario_tables import scenario_tables
-from specc.runs import Outcome, Pool, Runs, Unusable, counted, verifications
 from specc.texts.runs import advice_of, column_of, columns_of, plain_of, reasons_of
-from specc.verifying import Verification
+from specc.verifying.runs import Outcome, Pool, Runs, Unusable, counted, verifications
+from specc.verifying.trace import Verification
 from verifier.report.report import Coverage, Report, Verdict
 from verifier.report.wording import percent
 

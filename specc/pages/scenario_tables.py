@@ -5,7 +5,6 @@ from typing import Final
 
 from specc.pages.page import RunRow, RunsTable
 from specc.pages.report_page import SIGNS
-from specc.runs import Pool, Runs, decided, is_of_one
 from specc.texts.scenario_runs import (
     NODE_TITLES,
     RequirementRow,
@@ -16,8 +15,9 @@ from specc.texts.scenario_runs import (
     required_of,
     requirement_rows,
 )
-from specc.verifying import Verification
-from specc.verifying_architecture import NotJudged
+from specc.verifying.architecture import NotJudged
+from specc.verifying.runs import Pool, Runs, decided, is_of_one
+from specc.verifying.trace import Verification
 from verifier.report.report import Standing, Verdict
 from verifier.report.requirement_results import Outcome
 

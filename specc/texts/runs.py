@@ -4,17 +4,6 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from spec_schema.diagnostics import render
-from specc.runs import (
-    Outcome,
-    Pool,
-    Runs,
-    Unusable,
-    counted,
-    is_of_one,
-    source_of,
-    unusable,
-    verifications,
-)
 from specc.texts.scenario_runs import (
     NODE_TITLES,
     REQUIREMENT_TITLES,
@@ -25,8 +14,19 @@ from specc.texts.scenario_runs import (
     required_of,
     requirement_rows,
 )
-from specc.verifying import Verification
-from specc.verifying_architecture import NotJudged
+from specc.verifying.architecture import NotJudged
+from specc.verifying.runs import (
+    Outcome,
+    Pool,
+    Runs,
+    Unusable,
+    counted,
+    is_of_one,
+    source_of,
+    unusable,
+    verifications,
+)
+from specc.verifying.trace import Verification
 from verifier.report.examination_text import examination_text
 from verifier.report.layout import bullets, section, table, wide_table, wrapped
 from verifier.report.report import Report, Verdict

@@ -4,8 +4,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
-from specc.runs import Outcome as Judged
-from specc.runs import (
+from specc.verifying.architecture import NotJudged
+from specc.verifying.recording import REQUIREMENTS
+from specc.verifying.runs import Outcome as Judged
+from specc.verifying.runs import (
     Pool,
     Runs,
     decided,
@@ -15,9 +17,7 @@ from specc.runs import (
     recording_of,
     verifications,
 )
-from specc.verifying import Verification
-from specc.verifying_architecture import NotJudged
-from specc.verifying_recording import REQUIREMENTS
+from specc.verifying.trace import Verification
 from verifier.report.examination import Examination
 from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.requirement_results import Outcome, RequirementResult

@@ -10,8 +10,8 @@ from runtime.recording.resolutions import shares_of
 from runtime.recording.tracks import Happening, RobotTrack
 from runtime.run import Run
 from runtime.world.audit import Jam
-from specc.replaying import Replay
-from specc.simulating import Simulation
+from specc.scenarios.replaying import Replay
+from specc.scenarios.simulating import Simulation
 from verifier.report.layout import INDENT, section, table
 from verifier.report.requirement_record import requirements_record, requirements_text
 from verifier.report.requirement_results import Outcome, RequirementResult

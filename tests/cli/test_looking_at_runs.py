@@ -96,7 +96,7 @@ def test_wrong_endings_are_refused_before_the_run(
     monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("specc.simulating.run", None)  # a run would fail
+    monkeypatch.setattr("specc.scenarios.simulating.run", None)  # a run would fail
 
     assert main(["simulate", FIRST_LIGHT, option, name]) == 2
 
@@ -107,7 +107,7 @@ def test_an_mp4_without_ffmpeg_is_refused_before_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr("specc.simulating.run", None)
+    monkeypatch.setattr("specc.scenarios.simulating.run", None)
 
     assert main(["simulate", FIRST_LIGHT, "--animate", "run.mp4"]) == 2
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import specc.runs
+import specc.verifying.runs
 from specc.cli import entry, main
-from specc.verifying import verify_by
+from specc.verifying.trace import verify_by
 from tests.verifier.test_report_formats import SCHEMA, faults
 from verifier.report.report import Verdict
 
@@ -120,7 +120,7 @@ def test_what_one_recording_leaves_open_is_a_note_where_all_decide(
 def test_the_bar_tells_how_many_bytes_of_a_recording_are_read() -> None:
     told: list[tuple[int, int]] = []
 
-    outcomes = specc.runs.verify_each(
+    outcomes = specc.verifying.runs.verify_each(
         ["good.csv"], VDP, only_verdict=True, reading=lambda done, whole: told.append((done, whole))
     )
 
@@ -132,13 +132,13 @@ def test_the_bar_tells_how_many_bytes_of_a_recording_are_read() -> None:
 def test_recordings_of_two_specs_are_not_put_together() -> None:
     other = Path("other.yaml")
     other.write_text(Path(VDP).read_text() + "\n# the same, but another file\n")
-    one = specc.runs.verify_together(["good.csv", "brief1.csv"], VDP, only_verdict=True)
+    one = specc.verifying.runs.verify_together(["good.csv", "brief1.csv"], VDP, only_verdict=True)
     mixed = [
         *one.outcomes[:1],
-        *specc.runs.verify_each(["brief1.csv"], other, only_verdict=True),
+        *specc.verifying.runs.verify_each(["brief1.csv"], other, only_verdict=True),
     ]
 
-    runs = specc.runs.runs_of(mixed)
+    runs = specc.verifying.runs.runs_of(mixed)
 
     assert len(one.pools) == 1
     assert one.verdict is Verdict.PASS
@@ -240,7 +240,7 @@ def test_a_mistake_is_an_annotation_where_annotations_are_asked_for(
 def test_an_interrupted_call_tells_what_was_done(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(specc.runs, "verify_by", _interrupted_at("bad.csv"))
+    monkeypatch.setattr(specc.verifying.runs, "verify_by", _interrupted_at("bad.csv"))
 
     assert verify("good.csv", "bad.csv", "short.csv", "-o", "r.json") == 130
 
@@ -253,7 +253,7 @@ def test_an_interrupted_call_tells_what_was_done(
 def test_a_call_that_is_interrupted_at_once_ends_like_any_other(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(specc.runs, "verify_by", _interrupted_at("good.csv"))
+    monkeypatch.setattr(specc.verifying.runs, "verify_by", _interrupted_at("good.csv"))
     monkeypatch.setattr("sys.argv", ["specc", "verify", "good.csv", "bad.csv", "--spec", VDP])
 
     with pytest.raises(SystemExit) as ended:
@@ -274,14 +274,14 @@ def _interrupted_at(name: str) -> Callable[..., object]:
 
 def test_the_spec_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
-    real = specc.runs.program_for_verify
+    real = specc.verifying.runs.program_for_verify
 
     def counted(path: Path, **named: bool) -> object:
         calls.append(path)
         return real(path, **named)
 
-    monkeypatch.setattr(specc.runs, "program_for_verify", counted)
-    outcomes: Iterator[object] = specc.runs.verify_each(
+    monkeypatch.setattr(specc.verifying.runs, "program_for_verify", counted)
+    outcomes: Iterator[object] = specc.verifying.runs.verify_each(
         ["good.csv", "bad.csv"], VDP, only_verdict=True
     )
 

@@ -10,7 +10,7 @@ from runtime.arrays import Array
 from runtime.recording.scenario_run import recorded_run
 from runtime.run import Run, run
 from specc.figures.world import draw_world
-from specc.pictured import pictured
+from specc.scenarios.pictured import pictured
 from tests.principles.scenes import GO, PROBE, SPIN, robot, scenario
 from tests.specc.test_simulating_recording import drawn
 

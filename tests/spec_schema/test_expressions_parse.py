@@ -142,7 +142,12 @@ def test_every_operation_knows_its_operator() -> None:
         ("2(x)", "2", "'2' is not a function", "write * for a product"),
         ("x +", "+", "a value is missing after '+'", "write it, or remove '+'"),
         ("* x", "*", "a value is missing before '*'", "write it, or remove '*'"),
-        ("x + * y", "+ *", "a value is missing between '+' and '*'", "write it, or remove one of both"),
+        (
+            "x + * y",
+            "+ *",
+            "a value is missing between '+' and '*'",
+            "write it, or remove one of both",
+        ),
         ("min(a, , b)", ",", "a value is missing before ','", "write it, or remove ','"),
         ("(x", "(", "'(' is never closed", "add ')'"),
         ("x)", ")", "')' closes nothing", "remove it, or open a bracket"),

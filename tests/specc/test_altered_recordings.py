@@ -14,8 +14,8 @@ from runtime.recording.scenario_run import recorded_run
 from runtime.recording.tables import Field
 from runtime.run import run
 from spec_schema.diagnostics import SpecError
-from specc.replaying import replayed
-from specc.verifying_recording import verify_run
+from specc.scenarios.replaying import replayed
+from specc.verifying.recording import verify_run
 from tests.runtime.first_light import first_light
 from tests.specc.altered_recordings import Content, content_of, replaced, without, written
 from verifier.architectures.log import open_run

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from specc.simulating import simulate_scenario
+from specc.scenarios.simulating import simulate_scenario
 from verifier.report.requirement_results import Outcome
 
 ALONE = sorted((Path(__file__).parents[2] / "specs" / "scenarios" / "alone").glob("*.yaml"))

@@ -13,7 +13,7 @@ from spec_schema.load import load
 from specc.first_spec import beginnings
 from specc.first_spec.sets import FIRST
 from specc.first_spec.written import spec_for
-from specc.verifying import verify
+from specc.verifying.trace import verify
 from verifier.traces.inventory import FieldInfo, Inventory, TopicInfo, inspect
 from verifier.traces.trace import Loss
 

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from specc import last_light
-from specc.pictured import pictured, scene_of, spoken_of
 from specc.recorded import record_run
-from specc.replaying import replayed
-from specc.simulating import Simulation, simulate_scenario
+from specc.scenarios import last_light
+from specc.scenarios.pictured import pictured, scene_of, spoken_of
+from specc.scenarios.replaying import replayed
+from specc.scenarios.simulating import Simulation, simulate_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "specs" / "scenarios"
 

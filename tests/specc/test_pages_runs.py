@@ -10,10 +10,10 @@ from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from specc.pages.prose import prose
 from specc.pages.runs_page import top_advice, top_reasons
-from specc.runs import Pool, Runs, Unusable
-from specc.spec_finding import Found
 from specc.texts.runs import runs_table
-from specc.verifying import Verification
+from specc.verifying.runs import Pool, Runs, Unusable
+from specc.verifying.spec_finding import Found
+from specc.verifying.trace import Verification
 from tests.specc.examination_scenes import diagnosis, examination, passed, switching
 from verifier.fidelity.verify import Judgement
 from verifier.report.advice import advised

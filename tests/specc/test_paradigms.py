@@ -11,7 +11,7 @@ import pytest
 from runtime.arrays import Array
 from runtime.program import Kind, Unit
 from runtime.recording.tracks import Quantity
-from specc.simulating import simulate_scenario
+from specc.scenarios.simulating import simulate_scenario
 from tests.study.paradigms import (
     PARADIGMS,
     POSTS,

@@ -11,7 +11,7 @@ from runtime.recording.scenario_run import recorded_run
 from runtime.run import run
 from spec_schema.diagnostics import SpecError
 from specc.cli import main
-from specc.simulating import required_of, simulate_scenario
+from specc.scenarios.simulating import required_of, simulate_scenario
 from tests.runtime.first_light import FILE, first_light, short_run
 
 SPECS = FILE.parents[1]

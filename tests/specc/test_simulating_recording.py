@@ -19,7 +19,7 @@ from runtime.arrays import Array
 from runtime.recording.scenario_run import recorded_run
 from runtime.run import Run, run
 from specc.cli import main
-from specc.run_standard import carried_by
+from specc.verifying.standard import carried_by
 from tests.runtime.first_light import first_light, short_run
 from tests.verifier.architectures.gathering import Gathered
 from verifier.architectures.log import open_run

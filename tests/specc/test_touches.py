@@ -8,8 +8,8 @@ import pytest
 from runtime.container import ArtifactError
 from runtime.recording.happened import Happened, from_bytes, to_bytes
 from runtime.run import Run
-from specc.pictured import pictured
-from specc.simulating import simulate_scenario
+from specc.scenarios.pictured import pictured
+from specc.scenarios.simulating import simulate_scenario
 
 
 @cache

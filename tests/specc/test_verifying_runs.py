@@ -15,10 +15,10 @@ from runtime.run import Run
 from spec_schema.diagnostics import SpecError
 from specc.cli import main
 from specc.loading import compile_scenario_spec
-from specc.runs import verifications, verify_together
-from specc.simulating import Simulation, simulate_scenario
+from specc.scenarios.simulating import Simulation, simulate_scenario
 from specc.texts.runs import runs_table
-from specc.verifying_recording import RunVerification
+from specc.verifying.recording import RunVerification
+from specc.verifying.runs import verifications, verify_together
 from verifier.report.report import Verdict
 
 SPECS = Path(__file__).parents[2] / "specs"

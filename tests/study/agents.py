@@ -35,7 +35,7 @@ from specc.drawn import write_picture
 from specc.figures.style_names import Style
 from specc.figures.world import draw_world
 from specc.loading import compile_scenario_spec
-from specc.pictured import pictured
+from specc.scenarios.pictured import pictured
 
 ROOT = Path(__file__).parents[2]
 CELL = 0.2

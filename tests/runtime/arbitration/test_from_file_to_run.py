@@ -199,8 +199,8 @@ def make(tmp_path: Path) -> Make:
 
 
 def ran(path: Path, *, allow_code: bool = False) -> Ran:
-    """The scenario, checked, compiled and run, with nothing to remark."""
-    assert [found.code for found in check(path)] == []
+    """The scenario, checked, compiled and run; its behaviors are imitations, and nothing else."""
+    assert {found.code for found in check(path)} <= {"S362"}
     compiled = compile_scenario(path, lambda _what, _done, _of: None)
     made = run(compiled.scenario, allow_code=allow_code)
     assert [event.what for event in made.events] == []

@@ -16,7 +16,7 @@ from runtime.arbitration.rules import Rules
 from runtime.arrays import Array
 from spec_schema.diagnostics import SpecError
 from specc.reported import findings_in
-from specc.verifying import Verification
+from specc.verifying.trace import Verification
 from verifier.arbitration.choosing import rule_chooser
 from verifier.arbitration.comparisons import infix, opened
 from verifier.arbitration.decisions import Decisions

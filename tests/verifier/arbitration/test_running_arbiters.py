@@ -12,8 +12,8 @@ from runtime.arrays import Array
 from runtime.user_code import load_callee
 from spec_schema.diagnostics import SpecError
 from specc.cli import main
-from specc.runs import verify_together
-from specc.verifying import Verification
+from specc.verifying.runs import verify_together
+from specc.verifying.trace import Verification
 from verifier.report.arbitration import Arbitration, ThresholdStanding
 from verifier.report.report import Verdict
 

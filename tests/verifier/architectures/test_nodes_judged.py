@@ -13,7 +13,7 @@ from runtime.architecture import Architecture, Outside, Way
 from runtime.program import Program
 from runtime.scheduler.scheduler import Scheduler
 from specc.loading import load_program
-from specc.verifying_architecture import How, NodeVerdict, examine_nodes
+from specc.verifying.architecture import How, NodeVerdict, examine_nodes
 from tests.runtime.scheduler.plane import STEP, N, Plain, Plane, architecture, resolution, scenario
 from tests.verifier.architectures.gathering import Gathered
 from verifier.architectures.nodes import (

@@ -8,9 +8,9 @@ from specc.figures.animation import animate
 from specc.figures.scene import Scene, Trails
 from specc.figures.style_names import Style
 from specc.figures.world import draw_world
-from specc.pictured import pictured
-from specc.replaying import replayed
-from specc.simulating import Simulation
+from specc.scenarios.pictured import pictured
+from specc.scenarios.replaying import replayed
+from specc.scenarios.simulating import Simulation
 
 
 def draw_run(made: Simulation | Path | str, path: Path | str, style: str = Style.SCREEN) -> None:

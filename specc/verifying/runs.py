@@ -9,10 +9,10 @@ from typing import TypeAlias, final
 from runtime.arbiter import Arbiter
 from runtime.program import Program
 from spec_schema.diagnostics import SpecError
-from specc.run_standard import carried_by, is_of_runs
-from specc.verifying import Clock, Verification, program_for_verify, verify_by
-from specc.verifying_architecture import NotJudged
-from specc.verifying_recording import REQUIREMENTS, verify_carried
+from specc.verifying.architecture import NotJudged
+from specc.verifying.recording import REQUIREMENTS, verify_carried
+from specc.verifying.standard import carried_by, is_of_runs
+from specc.verifying.trace import Clock, Verification, program_for_verify, verify_by
 from verifier.arbitration.together import pooled_decisions
 from verifier.architectures.telling import without_logs
 from verifier.fidelity.together import pooled

@@ -18,9 +18,9 @@ from runtime.world.model_faults import faults_of_things
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.figures.scene import Scene, Trails
-from specc.pictured import Course, glow_of, scene_at_end, trails_of
-from specc.recorded_requirements import judged_on
-from specc.run_standard import Carried, carried_by
+from specc.scenarios.pictured import Course, glow_of, scene_at_end, trails_of
+from specc.verifying.requirements import judged_on
+from specc.verifying.standard import Carried, carried_by
 from verifier.architectures.document import ScenarioDocument
 from verifier.architectures.floor import recorded_floor
 from verifier.architectures.log import RunLog, open_run, together

@@ -27,7 +27,7 @@ from specc.figures.scene import (
     Scene,
     Trails,
 )
-from specc.last_light import last_light
+from specc.scenarios.last_light import last_light
 from verifier.report.requirement_results import Outcome as Judged
 from verifier.report.requirement_results import RequirementResult
 

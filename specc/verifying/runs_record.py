@@ -1,8 +1,8 @@
 """Recordings as JSON values, in the format of docs/json_report.md."""
 
-from specc.runs import Outcome, Pool, Runs, Unusable, not_judged, unusable, verifications
-from specc.verifying import Verification
-from specc.verifying_architecture import NotJudged
+from specc.verifying.architecture import NotJudged
+from specc.verifying.runs import Outcome, Pool, Runs, Unusable, not_judged, unusable, verifications
+from specc.verifying.trace import Verification
 from verifier.report.examination_record import FORMAT, examination_record
 from verifier.report.report import WORST_FIRST
 

@@ -9,7 +9,7 @@ from runtime.requirement import Requirement
 from spec_schema.diagnostics import Diagnostic, SpecError
 from spec_schema.suggest import did_you_mean
 from specc.faults import fault
-from specc.run_standard import Carried
+from specc.verifying.standard import Carried
 from verifier.architectures.log import RunLog
 from verifier.architectures.required import results_on
 from verifier.report.requirement_results import RequirementResult

@@ -10,7 +10,7 @@ from runtime.architecture import Architecture
 from runtime.program import Program
 from runtime.user_code import UserCodeError, where_is
 from spec_schema.diagnostics import SpecError
-from specc.verifying_arbiter import running
+from specc.verifying.arbiter import running
 from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
 from verifier.architectures.telling import controls_as_recorded
 from verifier.fidelity.verify import Judgement

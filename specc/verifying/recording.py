@@ -10,11 +10,11 @@ from runtime.program import Program
 from runtime.requirement import Requirement
 from runtime.scenario import Robot
 from specc.faults import fault
-from specc.recorded_requirements import judged_on
-from specc.run_standard import Carried, Standard, carried_by, standard_of
-from specc.spec_finding import Found
-from specc.verifying import Verification, program_for_verify
-from specc.verifying_architecture import How, NodeVerdict, NotJudged, examine_nodes
+from specc.verifying.architecture import How, NodeVerdict, NotJudged, examine_nodes
+from specc.verifying.requirements import judged_on
+from specc.verifying.spec_finding import Found
+from specc.verifying.standard import Carried, Standard, carried_by, standard_of
+from specc.verifying.trace import Verification, program_for_verify
 from verifier.architectures.log import RunLog, open_run, together
 from verifier.architectures.motion import topics_of_motion, with_motion
 from verifier.architectures.own_doing import topics_of_doing, with_own_doing

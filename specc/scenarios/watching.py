@@ -19,7 +19,7 @@ from specc.figures.live_lines import live_lines
 from specc.figures.live_window import live_window, open_window
 from specc.figures.scene import NOBODY, Scene, Trails
 from specc.figures.style_names import Style
-from specc.pictured import drawn_sensors, said_now, scene_of, winner
+from specc.scenarios.pictured import drawn_sensors, said_now, scene_of, winner
 
 
 @final

@@ -15,9 +15,9 @@ from spec_schema.diagnostics import SpecError
 from spec_schema.load import Loaded, load
 from specc.faults import fault
 from specc.loading import load_program, refuse_log
-from specc.run_standard import carries_architectures
-from specc.spec_finding import Found, find_spec
-from specc.verifying_arbiter import arbiter_for_verify, examine_arbiter
+from specc.verifying.arbiter import arbiter_for_verify, examine_arbiter
+from specc.verifying.spec_finding import Found, find_spec
+from specc.verifying.standard import carries_architectures
 from verifier.arbitration.reader import reader_of
 from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of

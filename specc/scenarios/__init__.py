@@ -1,0 +1,1 @@
+"""Scenarios: run, watched, put together again from recordings, and drawn."""
