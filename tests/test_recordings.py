@@ -22,7 +22,7 @@ DRIVE = SPECS / "husky_drive.yaml"
 
 @pytest.fixture(scope="module")
 def husky() -> specc.Report:
-    return specc.verify(HUSKY / "husky.mcap", DRIVE, only_verdict=True).report
+    return specc.verify(HUSKY / "husky.mcap", DRIVE, depth="verdict").report
 
 
 def test_the_husky_drives_as_its_spec_says(husky: specc.Report) -> None:
@@ -37,14 +37,14 @@ def test_a_turn_scale_ten_percent_off_fails_and_names_the_heading(
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(text.replace("value: 0.944", f"value: {0.944 * factor:.4f}"))
 
-    report = specc.verify(HUSKY / "husky.mcap", wrong, only_verdict=True).report
+    report = specc.verify(HUSKY / "husky.mcap", wrong, depth="verdict").report
 
     assert report.verdict is specc.Verdict.FAIL
     assert "heading" in report.reasons[0]
 
 
 def test_the_same_drive_as_a_ros_1_bag_gives_the_same_figures(husky: specc.Report) -> None:
-    bag = specc.verify(HUSKY / "husky.bag", DRIVE, only_verdict=True).report
+    bag = specc.verify(HUSKY / "husky.bag", DRIVE, depth="verdict").report
 
     for one, other in zip(husky.variables, bag.variables, strict=True):
         assert other.declared.rmse == pytest.approx(one.declared.rmse, rel=1e-9)
@@ -54,7 +54,7 @@ def test_the_same_drive_as_a_ros_1_bag_gives_the_same_figures(husky: specc.Repor
 def test_the_scitos_keeps_its_wall_while_it_moves_forward() -> None:
     trace = SPECS / "recordings" / "scitos" / "wall_following.csv"
 
-    report = specc.verify(trace, SPECS / "keep_left.yaml", only_verdict=True).report
+    report = specc.verify(trace, SPECS / "keep_left.yaml", depth="verdict").report
 
     assert report.verdict is specc.Verdict.PASS
     assert any("judge_when" in exclusion.cause for exclusion in report.exclusions)
@@ -108,7 +108,7 @@ def test_a_faithful_robot_passes_with_nothing_but_its_file_named(
 ) -> None:
     monkeypatch.chdir(tmp_path)
 
-    verification = specc.verify(robot(1.0).name, only_verdict=True)
+    verification = specc.verify(robot(1.0).name, depth="verdict")
 
     assert verification.report.verdict is specc.Verdict.PASS
     assert "attached" in verification.found.how
@@ -121,7 +121,7 @@ def test_a_robot_with_one_parameter_a_fifth_off_fails(
 ) -> None:
     monkeypatch.chdir(tmp_path)
 
-    assert specc.verify(robot(1.2).name, only_verdict=True).report.verdict is specc.Verdict.FAIL
+    assert specc.verify(robot(1.2).name, depth="verdict").report.verdict is specc.Verdict.FAIL
 
 
 def test_an_attached_spec_that_is_not_the_projects_is_refused(

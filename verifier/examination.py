@@ -15,7 +15,8 @@ from verifier.fidelity.stretches.needs import parts_of
 from verifier.fidelity.verify import Judgement, judgement_of
 from verifier.limits.limits import limits_of
 from verifier.report.advice import advised
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
+from verifier.report.report import Verdict
 from verifier.robot_topology.compare import compare_features
 from verifier.scores.scores import scores_of
 from verifier.traces.trace import Trace
@@ -25,13 +26,13 @@ def examine(
     program: Program,
     trace: Trace,
     *,
-    only_verdict: bool = False,
+    depth: Depth = "all",
     progress: Callable[[str], None] | None = None,
 ) -> Examination:
     """Judge `trace` against `program`, and explain the judgement.
 
     Args:
-        only_verdict: leave out all but the report.
+        depth: what is found out beside the report.
         progress: is told what is done next, as a phrase, before each phase.
 
     Raises:
@@ -39,7 +40,7 @@ def examine(
     """
     tell = progress or _in_silence
     tell("judging")
-    return explain(program, trace, judgement_of(program, trace), tell, only_verdict=only_verdict)
+    return explain(program, trace, judgement_of(program, trace), tell, depth=depth)
 
 
 def explain(
@@ -48,12 +49,12 @@ def explain(
     judgement: Judgement,
     tell: Callable[[str], None],
     *,
-    only_verdict: bool,
+    depth: Depth,
 ) -> Examination:
     """What `examine` does, with the `judgement` of `trace` at hand."""
     report, study = judgement.report, judgement.study
     origins = origins_of(program)
-    if only_verdict:
+    if depth == "verdict" or (depth == "reasons" and report.verdict is Verdict.PASS):
         return Examination(with_stuck(report, program, trace), origins=origins)
     tell("why it departs")
     diagnosis = diagnose(program, trace, study, report)
@@ -63,7 +64,7 @@ def explain(
     tell("features of the field")
     features = compare_features(program, trace, study)
     partial = Examination(advisory, judgement.switching, diagnosis, None, features, None, origins)
-    if study is None:
+    if study is None or depth == "reasons":
         return partial
     tell("the limits of this trace")
     limits = limits_of(program, trace, study, report)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from specc.cli.console import Bar
     from specc.verifying.runs import Outcome, Runs
+    from verifier.report.examination import Depth
 
 READING: Final = "reading"
 """The phase in which bytes are counted."""
@@ -81,10 +82,22 @@ def verify(
         clock.value,
         allow_code=allow_code,
         strict=strict,
-        only_verdict=quick,
+        depth="verdict" if quick else _depth(traces, spec, output, form),
     )
     outcomes, is_interrupted = _judged(judge, len(traces))
     return _told(outcomes, traces, output, form, is_interrupted=is_interrupted)
+
+
+def _depth(
+    traces: Sequence[Path], spec: Path | None, output: Sequence[Path], form: ReportFormat
+) -> "Depth":
+    """What is found out: all where it is written down, else what the table has room for."""
+    from specc.verifying.standard import carries_architectures
+
+    if output or form is ReportFormat.JSON:
+        return "all"
+    is_table = len(traces) > 1 or (spec is None and carries_architectures(traces[0]))
+    return "reasons" if is_table else "all"
 
 
 def _refuse_early(output: Sequence[Path]) -> None:

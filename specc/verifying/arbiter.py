@@ -10,7 +10,7 @@ from specc.faults import fault
 from verifier.arbitration.judging import judge_arbiter
 from verifier.arbitration.numbers import Decide, Running
 from verifier.arbitration.reader import CHOICE
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
 from verifier.traces.trace import Trace
 
 SEED = 0
@@ -31,7 +31,7 @@ def arbiter_for_verify(path: Path, *, allow_code: bool = False) -> Arbiter:
     return arbiter
 
 
-def examine_arbiter(arbiter: Arbiter, trace: Trace, *, only_verdict: bool = False) -> Examination:
+def examine_arbiter(arbiter: Arbiter, trace: Trace, *, depth: Depth = "all") -> Examination:
     """The verdict on the robot's decisions, and what explains it.
 
     Raises:
@@ -41,7 +41,7 @@ def examine_arbiter(arbiter: Arbiter, trace: Trace, *, only_verdict: bool = Fals
     beside = Path(arbiter.source.file).parent
     try:
         decides = running(arbiter, arbiter.name, _period(trace), beside=beside)
-        made = judge_arbiter(arbiter, trace, decides, only_verdict=only_verdict)
+        made = judge_arbiter(arbiter, trace, decides, depth=depth)
     except UserCodeError as error:
         raise fault("V382", arbiter.source.file, str(error), "mend that code") from error
     origins = {"fidelity": made.section.origin}

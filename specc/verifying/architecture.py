@@ -14,7 +14,7 @@ from specc.verifying.arbiter import running
 from verifier.architectures.nodes import NodeRecord, examine_behavior, examine_decisions
 from verifier.architectures.telling import controls_as_recorded
 from verifier.fidelity.verify import Judgement
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
 
 
 @final
@@ -58,7 +58,7 @@ class How:
     seed: int = 0
     only: Collection[str] | None = None
     allow_code: bool = False
-    only_verdict: bool = False
+    depth: Depth = "all"
     is_named: bool = False
 
 
@@ -92,7 +92,7 @@ def _examined(
     try:
         if node.behavior >= 0:
             program = architecture.programs[node.behavior]
-            made = examine_behavior(program, record, source, only_verdict=how.only_verdict)
+            made = examine_behavior(program, record, source, depth=how.depth)
             told = controls_as_recorded(program, record.columns) if how.is_named else ()
             examination = _with_notes(made.examination, told)
             return NodeVerdict(record.name, made.program, examination, made.judgement, told)
@@ -102,7 +102,7 @@ def _examined(
         if arbiter.paradigm is Paradigm.MODULE and not how.allow_code:
             return NotJudged(named, _not_allowed(arbiter, beside))
         decides = running(arbiter, record.name, node.period, seed=how.seed, beside=beside)
-        found = examine_decisions(arbiter, record, source, decides, only_verdict=how.only_verdict)
+        found = examine_decisions(arbiter, record, source, decides, depth=how.depth)
         return NodeVerdict(record.name, arbiter, found, None)
     except SpecError as error:
         return NotJudged(named, error.diagnostics[0].message)

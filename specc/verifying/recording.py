@@ -21,6 +21,7 @@ from verifier.architectures.own_doing import topics_of_doing, with_own_doing
 from verifier.architectures.quantities import POSE, quantities_in, topics_of_quantities
 from verifier.architectures.recorded import records_of, topics_of_nodes
 from verifier.architectures.required import examine_requirements
+from verifier.report.examination import Depth
 from verifier.report.report import WORST_FIRST, Verdict
 from verifier.traces.files.log import Progress
 from verifier.traces.read import refuse_losses
@@ -69,7 +70,7 @@ def verify_run(
     *,
     allow_code: bool = False,
     strict: bool = False,
-    only_verdict: bool = False,
+    depth: Depth = "all",
     progress: Callable[[str], None] | None = None,
     reading: Progress | None = None,
 ) -> RunVerification:
@@ -79,7 +80,7 @@ def verify_run(
         spec: a scenario, an architecture, or one behavior or arbiter; None: what is attached.
         allow_code: whether arbiters that are code of the user's own may be run.
         strict: any loss in the recording is an error.
-        only_verdict: leave out what explains the verdicts.
+        depth: what is found out beside the verdict.
         progress: is told what is done next, as a phrase.
         reading: is told now and then how many bytes of how many were read.
 
@@ -99,7 +100,7 @@ def verify_run(
         program_for_verify,
         allow_code=allow_code,
         strict=strict,
-        only_verdict=only_verdict,
+        depth=depth,
         progress=progress,
         reading=reading,
     )
@@ -113,7 +114,7 @@ def verify_carried(
     *,
     allow_code: bool,
     strict: bool,
-    only_verdict: bool,
+    depth: Depth,
     progress: Callable[[str], None] | None,
     reading: Progress | None,
 ) -> RunVerification:
@@ -135,7 +136,7 @@ def verify_carried(
         _seed(carried),
         standard.only,
         allow_code,
-        only_verdict,
+        depth,
         spec is not None,
     )
     records = records_of(log, {robot.name: robot.architecture for robot in standard.robots})

@@ -16,7 +16,7 @@ from specc.verifying.trace import Clock, Verification, program_for_verify, verif
 from verifier.arbitration.together import pooled_decisions
 from verifier.architectures.telling import without_logs
 from verifier.fidelity.together import pooled
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
 from verifier.report.report import WORST_FIRST, Report, Verdict
 from verifier.report.wording import listed
 from verifier.traces.files.log import Progress
@@ -46,7 +46,7 @@ def verify_each(
     *,
     allow_code: bool = False,
     strict: bool = False,
-    only_verdict: bool = False,
+    depth: Depth = "all",
     progress: Callable[[str, str], None] | None = None,
     reading: Progress | None = None,
 ) -> Iterator[Outcome]:
@@ -58,7 +58,7 @@ def verify_each(
     Args:
         allow_code: whether arbiters that are code of the user's own may be run.
         strict: any loss in a log is an error.
-        only_verdict: leave out what explains the verdicts.
+        depth: what is found out beside the verdict.
         progress: is told which recording it is, and what is done next.
         reading: is told now and then how many bytes of how many of it were read.
 
@@ -69,7 +69,7 @@ def verify_each(
     named = spec if spec is None or isinstance(spec, Program) else Path(spec)
     if isinstance(named, Path) and not is_of_runs(named):
         program_of(named)
-    how = _How(named, clock, program_of, allow_code, strict, only_verdict, reading)
+    how = _How(named, clock, program_of, allow_code, strict, depth, reading)
     for trace in distinct(traces):
         tell = None if progress is None else partial(progress, str(trace))
         try:
@@ -93,7 +93,7 @@ class _How:
     program_of: Callable[[Path], Program | Arbiter]
     allow_code: bool
     strict: bool
-    only_verdict: bool
+    depth: Depth
     reading: Progress | None
 
 
@@ -111,7 +111,7 @@ def _judged(trace: Path, how: _How, tell: Callable[[str], None] | None) -> Itera
             how.clock,
             how.program_of,
             strict=how.strict,
-            only_verdict=how.only_verdict,
+            depth=how.depth,
             progress=tell,
             reading=how.reading,
         )
@@ -123,7 +123,7 @@ def _judged(trace: Path, how: _How, tell: Callable[[str], None] | None) -> Itera
         how.program_of,
         allow_code=how.allow_code,
         strict=how.strict,
-        only_verdict=how.only_verdict,
+        depth=how.depth,
         progress=tell,
         reading=how.reading,
     )
@@ -206,7 +206,7 @@ def verify_together(
     *,
     allow_code: bool = False,
     strict: bool = False,
-    only_verdict: bool = False,
+    depth: Depth = "all",
     progress: Callable[[str, str], None] | None = None,
 ) -> Runs:
     """Judge recordings each by itself, and all of one spec together.
@@ -219,7 +219,7 @@ def verify_together(
         clock,
         allow_code=allow_code,
         strict=strict,
-        only_verdict=only_verdict,
+        depth=depth,
         progress=progress,
     )
     return runs_of(tuple(each))

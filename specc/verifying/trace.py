@@ -21,7 +21,7 @@ from specc.verifying.standard import carries_architectures
 from verifier.arbitration.reader import reader_of
 from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
 from verifier.report.report import Report
 from verifier.traces.files.log import Progress
 from verifier.traces.read import read_trace
@@ -60,7 +60,7 @@ def verify(
     *,
     allow_code: bool = False,
     strict: bool = False,
-    only_verdict: bool = False,
+    depth: Depth = "all",
     progress: Callable[[str], None] | None = None,
     reading: Progress | None = None,
 ) -> Verification:
@@ -71,7 +71,7 @@ def verify(
     Args:
         allow_code: whether an arbiter that is code of the user's own may be run.
         strict: any loss in the log is an error.
-        only_verdict: leave out what explains the verdict.
+        depth: what is found out beside the verdict.
         progress: is told what is done next, as a phrase.
         reading: is told now and then how many bytes of how many were read.
 
@@ -87,7 +87,7 @@ def verify(
         clock,
         partial(program_for_verify, allow_code=allow_code),
         strict=strict,
-        only_verdict=only_verdict,
+        depth=depth,
         progress=progress,
         reading=reading,
     )
@@ -100,7 +100,7 @@ def verify_by(
     program_of: Callable[[Path], Program | Arbiter],
     *,
     strict: bool,
-    only_verdict: bool,
+    depth: Depth,
     progress: Callable[[str], None] | None,
     reading: Progress | None,
 ) -> Verification:
@@ -120,12 +120,12 @@ def verify_by(
         arbiter = found.program
         read = read_trace(trace, reader_of(arbiter), clock, reading, strict=strict)
         tell("judging")
-        examined = examine_arbiter(arbiter, read, only_verdict=only_verdict)
+        examined = examine_arbiter(arbiter, read, depth=depth)
         return Verification(Found(arbiter, found.how), examined, None)
     read = read_trace(trace, found.program, clock, reading, strict=strict)
     tell("judging")
     judgement = judgement_of(found.program, read)
-    made = explain(found.program, read, judgement, tell, only_verdict=only_verdict)
+    made = explain(found.program, read, judgement, tell, depth=depth)
     return Verification(Found(found.program, found.how), made, replace(judgement, study=None))
 
 

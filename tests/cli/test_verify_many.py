@@ -121,7 +121,7 @@ def test_the_bar_tells_how_many_bytes_of_a_recording_are_read() -> None:
     told: list[tuple[int, int]] = []
 
     outcomes = specc.verifying.runs.verify_each(
-        ["good.csv"], VDP, only_verdict=True, reading=lambda done, whole: told.append((done, whole))
+        ["good.csv"], VDP, depth="verdict", reading=lambda done, whole: told.append((done, whole))
     )
 
     assert len(list(outcomes)) == 1
@@ -132,10 +132,10 @@ def test_the_bar_tells_how_many_bytes_of_a_recording_are_read() -> None:
 def test_recordings_of_two_specs_are_not_put_together() -> None:
     other = Path("other.yaml")
     other.write_text(Path(VDP).read_text() + "\n# the same, but another file\n")
-    one = specc.verifying.runs.verify_together(["good.csv", "brief1.csv"], VDP, only_verdict=True)
+    one = specc.verifying.runs.verify_together(["good.csv", "brief1.csv"], VDP, depth="verdict")
     mixed = [
         *one.outcomes[:1],
-        *specc.verifying.runs.verify_each(["brief1.csv"], other, only_verdict=True),
+        *specc.verifying.runs.verify_each(["brief1.csv"], other, depth="verdict"),
     ]
 
     runs = specc.verifying.runs.runs_of(mixed)
@@ -282,7 +282,7 @@ def test_the_spec_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(specc.verifying.runs, "program_for_verify", counted)
     outcomes: Iterator[object] = specc.verifying.runs.verify_each(
-        ["good.csv", "bad.csv"], VDP, only_verdict=True
+        ["good.csv", "bad.csv"], VDP, depth="verdict"
     )
 
     assert len(list(outcomes)) == 2

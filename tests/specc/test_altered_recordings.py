@@ -37,7 +37,7 @@ def content(tmp_path_factory: pytest.TempPathFactory) -> Content:
 def codes(path: Path) -> tuple[str, str]:
     """What verify says of a recording, and what replay; empty where they use it."""
     found = []
-    for use in (lambda: verify_run(path, only_verdict=True), lambda: replayed(path)):
+    for use in (lambda: verify_run(path, depth="verdict"), lambda: replayed(path)):
         try:
             use()
             found.append("")

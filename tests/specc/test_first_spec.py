@@ -67,7 +67,7 @@ def test_a_base_in_columns_has_an_angle_a_command_and_a_mode(tmp_path: Path) -> 
     assert "speed: v_cmd" in text
     assert "it jumps by a turn 5 times" in text
     assert "by its name a command" in text
-    assert str(verify(tmp_path / "run.csv", path, only_verdict=True).report.verdict)
+    assert str(verify(tmp_path / "run.csv", path, depth="verdict").report.verdict)
 
 
 def test_a_turn_rate_in_degrees_turns_a_heading_in_degrees(tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_a_turn_rate_in_degrees_turns_a_heading_in_degrees(tmp_path: Path) -> No
     }
     path = first_spec(tmp_path, columns)
 
-    report = verify(tmp_path / "run.csv", path, only_verdict=True).report
+    report = verify(tmp_path / "run.csv", path, depth="verdict").report
     assert "unit: deg/s" in path.read_text()
     assert all(each.declared.departure < 0.02 for each in report.variables)
 
@@ -99,7 +99,7 @@ def test_what_takes_a_few_values_is_discrete(
 
     assert str(behavior(path).state["door"].kind) == "discrete"
     assert entry in path.read_text()
-    assert not verify(tmp_path / "run.csv", path, only_verdict=True).report.losses
+    assert not verify(tmp_path / "run.csv", path, depth="verdict").report.losses
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def sabotaged(library: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[
 def test_a_recording_says_of_requirements_what_the_run_itself_says_to_the_last_bit(
     made: Simulation, recording: Path
 ) -> None:
-    found = specc.verify_run(recording, only_verdict=True).requirements
+    found = specc.verify_run(recording, depth="verdict").requirements
 
     assert found is not None
     assert found.examination.requirements == made.requirements
@@ -111,7 +111,7 @@ def test_a_recording_says_of_requirements_what_the_run_itself_says_to_the_last_b
 
 
 def test_exactly_the_node_that_was_sabotaged_fails(sabotaged: tuple[Path, Path]) -> None:
-    faithful, weak = (specc.verify_run(path, LAYERS, only_verdict=True) for path in sabotaged)
+    faithful, weak = (specc.verify_run(path, LAYERS, depth="verdict") for path in sabotaged)
 
     assert [each.part for each in weak.nodes] == ["r.avoid", "r.seek", "r.wander", "r.choose"]
     failed = {each.part for each in weak.nodes if each.report.verdict is Verdict.FAIL}
@@ -122,7 +122,7 @@ def test_exactly_the_node_that_was_sabotaged_fails(sabotaged: tuple[Path, Path])
 
 
 def test_a_behavior_that_never_acted_is_open_and_says_why(recording: Path) -> None:
-    avoid = specc.verify_run(recording, only_verdict=True).node("r.avoid").report
+    avoid = specc.verify_run(recording, depth="verdict").node("r.avoid").report
 
     assert avoid.verdict is Verdict.INCONCLUSIVE
     assert avoid.reasons == ("it never acted in 13.9 s",)
@@ -144,7 +144,7 @@ def test_a_spec_that_is_named_judges_what_it_is_about(
     nodes: list[str],
     requires: bool,  # noqa: FBT001  of a table
 ) -> None:
-    found = specc.verify_run(recording, SPECS / spec, only_verdict=True)
+    found = specc.verify_run(recording, SPECS / spec, depth="verdict")
 
     assert [each.part for each in found.nodes] == nodes
     assert (found.requirements is not None) == requires
@@ -156,10 +156,10 @@ def test_a_compiled_architecture_judges_as_the_attached_one(
     path = tmp_path / "find_light.specc"
     assert main(["compile", str(SPECS / "architectures/find_light.yaml"), "-o", str(path)]) == 0
 
-    found = specc.verify_run(recording, path, only_verdict=True)
+    found = specc.verify_run(recording, path, depth="verdict")
 
     assert [each.report.verdict for each in found.nodes] == [
-        each.report.verdict for each in specc.verify_run(recording, only_verdict=True).nodes
+        each.report.verdict for each in specc.verify_run(recording, depth="verdict").nodes
     ]
 
 
@@ -272,7 +272,7 @@ def both(
 def test_several_recordings_of_a_scenario_have_one_row_for_each_requirement_and_node(
     both: tuple[Path, Path],
 ) -> None:
-    runs = verify_together(both, only_verdict=True)
+    runs = verify_together(both, depth="verdict")
     lines = runs_table(runs).splitlines()
 
     for text in REQUIRED:
@@ -297,12 +297,12 @@ def test_several_recordings_of_a_scenario_have_one_row_for_each_requirement_and_
 
 
 def test_the_nodes_of_several_runs_are_judged_together(both: tuple[Path, Path]) -> None:
-    runs = verify_together(both, only_verdict=True)
+    runs = verify_together(both, depth="verdict")
 
     pooled = {pool.members[0].part: pool.report.verdict for pool in runs.pools}
     assert pooled["r.seek"] is Verdict.PASS
     windows = [pool.report.starts.size for pool in runs.pools if pool.members[0].part == "r.seek"]
-    alone = [specc.verify_run(each, only_verdict=True).node("r.seek") for each in both]
+    alone = [specc.verify_run(each, depth="verdict").node("r.seek") for each in both]
     assert windows == [sum(each.report.starts.size for each in alone)]
 
 
@@ -313,7 +313,7 @@ def test_a_torn_recording_tells_its_losses_at_every_node(recording: Path, tmp_pa
     data[middle : middle + 400] = bytes(400)
     torn.write_bytes(data)
 
-    found = specc.verify_run(torn, only_verdict=True)
+    found = specc.verify_run(torn, depth="verdict")
     assert all(each.report.losses for each in found.nodes)
 
     with pytest.raises(SpecError) as error:
@@ -331,11 +331,11 @@ def test_a_state_that_is_only_reckoned_is_judged_by_how_the_body_moved(
     avoiding: Simulation, tmp_path: Path
 ) -> None:
     run = avoiding.run
-    own = specc.verify_run(kept(run, tmp_path / "own.mcap"), only_verdict=True)
+    own = specc.verify_run(kept(run, tmp_path / "own.mcap"), depth="verdict")
     poses = run.world.poses.copy()
     poses[:, -1, 2] *= 0.5
     slow = replace(run, world=replace(run.world, poses=poses))
-    turned = specc.verify_run(kept(slow, tmp_path / "slow.mcap"), only_verdict=True)
+    turned = specc.verify_run(kept(slow, tmp_path / "slow.mcap"), depth="verdict")
 
     def departure(found: RunVerification) -> float:
         results = found.node("r.avoid").report.variables
@@ -350,7 +350,7 @@ def test_what_went_on_before_and_what_was_not_seen_is_not_a_behaviors_doing(
     avoiding: Simulation, tmp_path: Path
 ) -> None:
     run = avoiding.run
-    seek = specc.verify_run(kept(run, tmp_path / "run.mcap"), only_verdict=True).node("r.seek")
+    seek = specc.verify_run(kept(run, tmp_path / "run.mcap"), depth="verdict").node("r.seek")
 
     quantities = run.signals
     seen, turn = quantities["r.beacon.seen"], quantities["r.seek.turn"]

@@ -83,7 +83,7 @@ def _verdict(spec: Arbiter, threshold: float, count: int, rng: np.random.Generat
         CHOICE: Series(CHOICE, times, chosen.astype(float), CHOICE, "log"),
     }
     trace = Trace("planted", series, {}, 0.0, (), ())
-    return judge_arbiter(replace(spec), trace, only_verdict=True).report.verdict
+    return judge_arbiter(replace(spec), trace, depth="verdict").report.verdict
 
 
 def _course(count: int, rng: np.random.Generator) -> Array:

@@ -25,6 +25,7 @@ from verifier.arbitration.regions import boxes, cells, standing_of
 from verifier.arbitration.saying import CONFIDENCE, reasons_of, sentences_of
 from verifier.arbitration.shares import share_of, slowness_of_choices
 from verifier.report.arbitration import Arbitration, Explanation, Region, Threshold
+from verifier.report.examination import Depth
 from verifier.report.report import (
     Report,
     SpecIdentity,
@@ -53,7 +54,7 @@ class Arbitrated:
 
 
 def judge_arbiter(
-    arbiter: Arbiter, trace: Trace, running: Running | None = None, *, only_verdict: bool = False
+    arbiter: Arbiter, trace: Trace, running: Running | None = None, *, depth: Depth = "all"
 ) -> Arbitrated:
     """Hold the decisions in `trace` against `arbiter`.
 
@@ -80,7 +81,7 @@ def judge_arbiter(
         slowness = min(slowness, slowness_of_numbers(arbiter, running, decisions, required))
     scales = Scales(slowness, CONFIDENCE)
     explained = None
-    is_told = not only_verdict and bool(decisions.judged.any())
+    is_told = depth != "verdict" and bool(decisions.judged.any())
     if is_told and rules is not None:
         explained = _by_rules(arbiter, rules, decisions, agrees, scales)
     elif is_told and running is not None and arbiter.paradigm in MOVABLE:

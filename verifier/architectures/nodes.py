@@ -30,7 +30,7 @@ from verifier.architectures.telling import (
 )
 from verifier.examination import explain
 from verifier.fidelity.verify import Judgement, judgement_of
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
 from verifier.report.wording import listed
 from verifier.traces.trace import TICKS, Loss, Series, Trace
 
@@ -122,7 +122,7 @@ def _clipped(
 
 
 def examine_behavior(
-    program: Program, record: NodeRecord, source: str, *, only_verdict: bool = False
+    program: Program, record: NodeRecord, source: str, *, depth: Depth = "all"
 ) -> NodeExamination:
     """The behavior judged where it had its way; its own `judge_when` is for other logs.
 
@@ -138,7 +138,7 @@ def examine_behavior(
     judgement = replace(judgement, report=told)
     notes = (*(f"{name} {UNMEASURED}" for name in record.unmeasured), *judgement.report.notes)
     judgement = replace(judgement, report=replace(judgement.report, notes=notes))
-    made = explain(judged, trace, judgement, _in_silence, only_verdict=only_verdict)
+    made = explain(judged, trace, judgement, _in_silence, depth=depth)
     return NodeExamination(judged, without_logs(made), replace(judgement, study=None))
 
 
@@ -196,7 +196,7 @@ def examine_decisions(
     source: str,
     running: Running | None = None,
     *,
-    only_verdict: bool = False,
+    depth: Depth = "all",
 ) -> Examination:
     """The arbiter judged at each of its ticks at which it was free to choose."""
     assert record.chosen is not None, "an arbiter chooses"
@@ -206,7 +206,7 @@ def examine_decisions(
     series[CHOICE] = Series(CHOICE, record.times, chosen, f"{record.name}.{CHOICE}", TICKS)
     own = replace(arbiter, judge_when=None)
     trace = _trace(series, record, source)
-    made = judge_arbiter(own, trace, running, only_verdict=only_verdict)
+    made = judge_arbiter(own, trace, running, depth=depth)
     origins = {"fidelity": made.section.origin}
     return Examination(made.report, origins=origins, arbitration=made.section)
 

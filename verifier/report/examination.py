@@ -1,7 +1,7 @@
 """The examination: the report with all the sections that explain it, as data."""
 
 from dataclasses import dataclass, field
-from typing import final
+from typing import Literal, TypeAlias, final
 
 from verifier.report.arbitration import Arbitration
 from verifier.report.diagnosis import Diagnosis
@@ -11,6 +11,9 @@ from verifier.report.report import Report
 from verifier.report.requirement_results import RequirementResult
 from verifier.report.scores import Scores
 from verifier.report.switching import Switching
+
+Depth: TypeAlias = Literal["verdict", "reasons", "all"]
+"""What is found out: the verdict; why, where it is no PASS; or also how far a verdict reaches."""
 
 
 @final

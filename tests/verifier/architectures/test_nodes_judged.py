@@ -113,10 +113,10 @@ def test_behaviors_are_judged_only_where_they_have_their_way(recorded: Recorded)
 
     for record, program in zip((home, away), whole.programs, strict=True):
         assert 0.1 < record.free.mean() < 0.9
-        made = examine_behavior(program, record, "run", only_verdict=True)
+        made = examine_behavior(program, record, "run", depth="verdict")
         assert made.examination.report.verdict is Verdict.PASS
         everywhere = replace(record, held_back={})
-        blamed = examine_behavior(program, everywhere, "run", only_verdict=True)
+        blamed = examine_behavior(program, everywhere, "run", depth="verdict")
         assert blamed.examination.report.verdict is Verdict.FAIL
 
 
@@ -124,7 +124,7 @@ def test_a_drive_that_is_too_weak_fails_the_behaviors_that_use_it(tmp_path: Path
     whole, (home, away, _) = run(tmp_path, Weak())
 
     for record, program in zip((home, away), whole.programs, strict=True):
-        made = examine_behavior(program, record, "run", only_verdict=True)
+        made = examine_behavior(program, record, "run", depth="verdict")
         assert made.examination.report.verdict is Verdict.FAIL
 
 
@@ -184,7 +184,7 @@ def test_in_a_blend_who_has_nearly_all_of_the_weight_has_its_way(tmp_path: Path)
 def test_every_node_is_judged_by_its_own_spec(recorded: Recorded) -> None:
     whole, records = recorded
 
-    found = examine_nodes(whole, records, "run", How(None, only_verdict=True))
+    found = examine_nodes(whole, records, "run", How(None, depth="verdict"))
 
     assert [each.name for each in found if isinstance(each, NodeVerdict)] == [
         "home",

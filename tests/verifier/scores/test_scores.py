@@ -111,7 +111,7 @@ def test_only_the_verdict_means_only_the_verdict() -> None:
     trace = van_der_pol_drive(seed=4, seconds=20.0, noise=0.01)
     told: list[str] = []
 
-    examination = examine(van_der_pol(), trace, only_verdict=True, progress=told.append)
+    examination = examine(van_der_pol(), trace, depth="verdict", progress=told.append)
 
     assert examination.scores is None
     assert told == ["judging"]
