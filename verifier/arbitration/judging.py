@@ -81,7 +81,7 @@ def judge_arbiter(
         slowness = min(slowness, slowness_of_numbers(arbiter, running, decisions, required))
     scales = Scales(slowness, CONFIDENCE)
     explained = None
-    is_told = depth != "verdict" and bool(decisions.judged.any())
+    is_told = bool(decisions.judged.any()) and _asks_why(depth, agrees, decisions)
     if is_told and rules is not None:
         explained = _by_rules(arbiter, rules, decisions, agrees, scales)
     elif is_told and running is not None and arbiter.paradigm in MOVABLE:
@@ -89,6 +89,12 @@ def judge_arbiter(
     section = _section(arbiter, rules, decisions, expected, agrees, scales, explained)
     standing = standing_of(section.share.interval.low, section.share.interval.high, required)
     return Arbitrated(_report(arbiter, trace, decisions, section, VERDICTS[standing]), section)
+
+
+def _asks_why(depth: Depth, agrees: Booleans, decisions: Decisions) -> bool:
+    """Whether decisions are explained: where that is wanted, and there is something to explain."""
+    differs = bool(np.any(decisions.judged & ~agrees))
+    return depth == "all" or (depth == "reasons" and differs)
 
 
 @final
