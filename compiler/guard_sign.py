@@ -18,7 +18,8 @@ EXTREME: Final = {"and": "min", "or": "max"}
 def signed(condition: Expr, discrete: Collection[str], tie: float = 0.0) -> Expr | None:
     """The signed form of a condition; None where it is not made of comparisons.
 
-    tie: what `>` and `<` ask for beyond equality, so that a tie is below 0.
+    tie: what is taken off where equality does not hold, and added where it does, so that the sign
+    at a tie is sure, and the opposite of that of the opposite condition.
 
     >>> from spec_schema.expressions.parse import parse
     >>> from spec_schema.expressions.printers.text import to_text
@@ -30,9 +31,9 @@ def signed(condition: Expr, discrete: Collection[str], tie: float = 0.0) -> Expr
         case Apply(op=op, operands=operands) if _is_stepped(op, operands, discrete):
             return Apply("where", (condition, Number(1.0), Number(-1.0)))
         case Apply(op="ge" | "gt" as op, operands=(a, b)):
-            return _beyond(Apply("sub", (a, b)), tie if op == "gt" else 0.0)
+            return _told_apart(Apply("sub", (a, b)), tie, holds=op == "ge")
         case Apply(op="le" | "lt" as op, operands=(a, b)):
-            return _beyond(Apply("sub", (b, a)), tie if op == "lt" else 0.0)
+            return _told_apart(Apply("sub", (b, a)), tie, holds=op == "le")
         case Apply(op="and" | "or" as op, operands=(a, b)):
             left, right = signed(a, discrete, tie), signed(b, discrete, tie)
             return None if left is None or right is None else Apply(EXTREME[op], (left, right))
@@ -42,8 +43,9 @@ def signed(condition: Expr, discrete: Collection[str], tie: float = 0.0) -> Expr
     return None
 
 
-def _beyond(difference: Expr, tie: float) -> Expr:
-    return Apply("sub", (difference, Number(tie))) if tie else difference
+def _told_apart(difference: Expr, tie: float, *, holds: bool) -> Expr:
+    """The difference, moved by the tie to the side on which equality is."""
+    return Apply("add" if holds else "sub", (difference, Number(tie))) if tie else difference
 
 
 def _is_stepped(op: str, operands: tuple[Expr, ...], discrete: Collection[str]) -> bool:

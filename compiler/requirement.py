@@ -7,7 +7,7 @@ from typing import Final, final
 from compiler.findings import Findings
 from compiler.guard_sign import signed
 from compiler.lower_parts import code_of
-from runtime.requirement import Formula, Operator, Requirement
+from runtime.requirement import TIE, Formula, Operator, Requirement
 from spec_schema.dimension import DIMENSIONLESS, Dimension, describe
 from spec_schema.expressions.dimensions import dimension_of
 from spec_schema.expressions.rewrite import names_in, resolve_texts, substitute
@@ -27,8 +27,6 @@ from spec_schema.suggest import did_you_mean
 from spec_schema.units import Unit, parse_quantity
 from spec_schema.wording import number
 
-TIE: Final = 2e-9
-"""In SI: `a > b` does not hold at a = b. Twice of what counts as rounding when a run is judged."""
 MOST_NAMED: Final = 6
 """How many quantities a help lists."""
 
@@ -119,8 +117,8 @@ def _margin(
         return None, None, [*faults, *more, *([fault] if names <= {*known, *quantities} else [])]
     dimension = None if faults else dimension_of(margin, dimensions)[0]
     numbers = {name: Number(one.value) for name, one in quantities.items()}
-    strict = signed(resolved, discrete, TIE) or margin
-    return substitute(strict, numbers), dimension, [*faults, *more]
+    sure = signed(resolved, discrete, TIE) or margin
+    return substitute(sure, numbers), dimension, [*faults, *more]
 
 
 def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -> Fault:

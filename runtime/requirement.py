@@ -2,9 +2,14 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import final
+from typing import Final, final
 
 from runtime.code import Code
+
+ROUNDING: Final = 1e-9
+"""In SI: where a run is judged, a margin that is so little below 0 is 0."""
+TIE: Final = 2 * ROUNDING
+"""In SI: what the margin at equality is: above 0 of `>=` and `<=`, below 0 of `>` and `<`."""
 
 
 @final
@@ -37,8 +42,8 @@ class Operator(StrEnum):
 class Formula:
     """A formula in postfix order: each part says how many parts before it are its own.
 
-    margin: of a PREDICATE, code whose value is its robustness: 0 or more where it holds, and below
-    it by a few nanounits where `>` or `<` meets equality.
+    margin: of a PREDICATE, code whose value is its robustness: 0 or more where it holds, moved by
+    `TIE` so that it is clear on which side equality is, also of what stands behind a `not`.
     first, last: the window of a temporal operator, in seconds from now; last is infinite (None)
     for the rest of the run.
     """

@@ -245,10 +245,11 @@ def _at(times: Array, poses: Array, time: float) -> tuple[float, float]:
 def _margin(one: RequirementResult) -> str:
     """By how much it holds or does not, and when that was decided.
 
-    Nothing where that is no quantity: where several units are mixed, or choices compared.
+    Nothing at the bound, and where that is no quantity: where several units are mixed, or choices
+    compared.
     """
     is_number = np.isfinite(one.robustness) and one.unit.text not in {"", "1"}
-    if not is_number or one.outcome is Judged.OPEN:
+    if not is_number or one.robustness == 0.0 or one.outcome is Judged.OPEN:
         return ""
     margin = quantity(abs(one.robustness), one.unit)
     return f"{margin} at {seconds(one.witness.time)}" if one.witness else margin

@@ -43,7 +43,7 @@ def lowered() -> Callable[[str], tuple[Requirement | None, list[str]]]:
     [
         ("r.clearance > 5 cm", "r.clearance 0.05 sub 2e-09 sub", "cm"),
         ("r.clearance < r.x", "r.x r.clearance sub 2e-09 sub", "m"),
-        ("r.light <= 2 lx", "2 r.light sub", "lx"),
+        ("r.light <= 2 lx", "2 r.light sub 2e-09 add", "lx"),
         ("r.choose.choice == 'go'", "r.choose.choice 1 eq 1 -1 where", "1"),
         ("r.bumper.hit != 1", "r.bumper.hit 1 ne 1 -1 where", "1"),
     ],
@@ -68,6 +68,11 @@ def test_a_margin_is_in_si_and_positive_where_it_holds(
         ("always 5 cm < r.clearance", Outcome.VIOLATED),
         ("always r.clearance <= 5 cm", Outcome.SATISFIED),
         ("eventually not r.clearance > 5 cm", Outcome.SATISFIED),
+        ("always not r.clearance >= 5 cm", Outcome.VIOLATED),
+        ("always not (not r.clearance >= 5 cm)", Outcome.SATISFIED),
+        ("always not (r.clearance >= 5 cm and r.clearance < 1 m)", Outcome.VIOLATED),
+        ("always (if r.clearance >= 5 cm then r.clearance > 1 m)", Outcome.VIOLATED),
+        ("always (if r.clearance > 5 cm then r.clearance > 1 m)", Outcome.SATISFIED),
     ],
 )
 def test_what_is_at_its_bound_is_not_beyond_it(
@@ -80,6 +85,7 @@ def test_what_is_at_its_bound_is_not_beyond_it(
     (judged,) = judge_requirements([found], {"r.clearance": touching})
 
     assert judged.outcome is outcome
+    assert judged.robustness == 0.0
     assert "exactly at its bound" in judged.sentence
 
 

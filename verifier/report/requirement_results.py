@@ -31,8 +31,9 @@ class RequirementResult:
     """One requirement on one run.
 
     low, high: the robustness is between them; equal where everything that counts was seen,
-    infinite where nothing bounds it. 0 or more satisfies. unit: of the robustness, empty where
-    its predicates have several. witness: None where what was not seen decides.
+    infinite where nothing bounds it. Above 0 satisfies; 0 is at the bound, and `outcome` says on
+    which side. unit: of the robustness, empty where its predicates have several. witness: None
+    where what was not seen decides.
     """
 
     text: str

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from runtime.program import Unit
-from runtime.requirement import Requirement
+from runtime.requirement import ROUNDING, Requirement
 from verifier.report.requirement_results import Outcome, RequirementResult, Witness
 from verifier.requirements.course import BEYOND
 from verifier.requirements.robustness import robustness
-from verifier.requirements.sentences import ROUNDING, Told, sentence_of, value_at
+from verifier.requirements.sentences import TIED, Told, sentence_of, value_at
 from verifier.requirements.signals import Signal, Span, names_in, span_of
 from verifier.requirements.witness import deciding
 
@@ -49,7 +49,7 @@ def judge_requirement(
         names = names_in(decides.margin, requirement.quantities)
         values = {name: value_at(signals[name], decides.time) for name in names}
         witness = Witness(decides.time - span.start, values)
-    low, high = _unbounded(low), _unbounded(high)
+    low, high = _shown(low), _shown(high)
     found = RequirementResult(
         requirement.text, outcome, low, high, unit, witness, "", requirement.origin
     )
@@ -63,5 +63,8 @@ def _outcome(low: float, high: float) -> Outcome:
     return Outcome.VIOLATED if high < -ROUNDING else Outcome.OPEN
 
 
-def _unbounded(value: float) -> float:
+def _shown(value: float) -> float:
+    """Robustness as it is told: 0 at the bound, infinite where nothing bounds it."""
+    if abs(value) <= TIED:
+        return 0.0
     return math.copysign(math.inf, value) if abs(value) >= BEYOND else value

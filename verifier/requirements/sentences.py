@@ -10,7 +10,7 @@ import numpy as np
 
 from runtime.arrays import Array, Booleans
 from runtime.program import Unit
-from runtime.requirement import Operator
+from runtime.requirement import ROUNDING, TIE, Operator
 from verifier.report.requirement_results import Outcome, RequirementResult
 from verifier.report.wording import listed, number, quantity
 from verifier.requirements.course import Course, negated
@@ -18,10 +18,8 @@ from verifier.requirements.robustness import Part
 from verifier.requirements.signals import Signal, Span, names_in
 from verifier.requirements.witness import Deciding, deciding, lowest_within, passages
 
-ROUNDING: Final = 1e-9
-"""In SI: so little below 0 is 0."""
-TIED: Final = 3 * ROUNDING
-"""In SI: so near to 0 is at the bound; `>` and `<` ask for a little more than equality."""
+TIED: Final = TIE + ROUNDING
+"""In SI: so near to 0 is at the bound."""
 BARE: Final = Unit("1", 1.0)
 WINDOW: Final = re.compile(r"^(?:(?:within|after) \S+ ?[a-z]+|from \S+ ?[a-z]+ to \S+ ?[a-z]+)\s+")
 WORD: Final = re.compile(r"[()]|\buntil\b")
