@@ -84,7 +84,8 @@ def _tell_unchecked(part: Part, program: Program, findings: Findings) -> None:
             f"whether {part.name} answers in time is not checked here: {program.name} gives its "
             f"field by `{form}`, whose rates are known only once it is compiled"
         )
-        remedy = "run `specc compile` on this architecture: it tells"
+        allowed = " --allow-code" if program.field.form == "module" else ""
+        remedy = f"run `specc compile{allowed}` on this architecture: it tells"
         findings.warning("S354", (*part.path, "period"), message, remedy)
 
 

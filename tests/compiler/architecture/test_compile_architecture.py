@@ -290,7 +290,9 @@ def test_one_arbiter_of_three_is_told_in_one_sentence(make: Make, tmp_path: Path
     assert proofs == {"choose holds one choice at a time, and none lets two of a, b and c act"}
 
 
-def test_checking_runs_no_user_code_and_makes_no_tables(make: Make, tmp_path: Path) -> None:
+def test_checking_runs_no_user_code_and_says_what_it_does_not_know_of_it(
+    make: Make, tmp_path: Path
+) -> None:
     (tmp_path / "bad.py").write_text("raise SystemExit\n", encoding="utf-8")
     (tmp_path / "made.yaml").write_text(
         "specc: 1\nkind: behavior\nname: made\nstate: {x: {unit: m, domain: [0, 1], role: both, "
@@ -301,6 +303,19 @@ def test_checking_runs_no_user_code_and_makes_no_tables(make: Make, tmp_path: Pa
     found = check(make({"made": "behavior: made.yaml, period: 50 ms, sense: {x: 0.5}"}))
 
     assert [one.code for one in found] == ["S354", "S337"]
+
+
+def test_checking_fills_in_arrows_and_so_finds_a_node_that_answers_too_late(make: Make) -> None:
+    node = (
+        f"behavior: {PARTS / 'drawn.yaml'}, period: {{}}, sense: {{clearance: "
+        "{from: ahead.range, outside: clip}}"
+    )
+
+    late = check(make({"keep_off": node.replace("{}", "1 s", 1)}))
+    in_time = check(make({"keep_off": node.replace("{}", "50 ms", 1)}))
+
+    assert [one.code for one in late] == ["S353"]
+    assert not any(one.code in ("S353", "S354") for one in in_time)
 
 
 def test_the_artifact_reads_back_and_depends_on_nothing_else(light: CompiledArchitecture) -> None:
