@@ -24,9 +24,10 @@ from runtime.scheduler.ticker import Ticker
 from runtime.table import Axis, Method
 from runtime.table_bounds import column_jets, columns_of
 from runtime.world.geometry import Plan
-from runtime.world.kernels import nearness
+from runtime.world.kernels import felt_mass, nearness
 from runtime.world.kernels.bodies import largest_speeds, states
 from runtime.world.kernels.cache import SOURCES as SENSES
+from runtime.world.kernels.cache import address_for_c
 from runtime.world.light import LightMap, Sources, light_at
 from runtime.world.model import Light, Pose
 from runtime.world.rays import NOBODY, View, first_hits, least_range, nearest_visible, parts_of
@@ -97,6 +98,10 @@ def _gap() -> object:
     return far, largest_speeds(nobody), states(nobody, np.zeros((0, 6)))
 
 
+def _feet() -> object:
+    return address_for_c(felt_mass.feel_evenly, felt_mass.SIGNATURE)
+
+
 def _tick() -> object:
     inputs = Inputs((), {})
     ticker = Ticker(NO_MOTION, inputs, (), None, 1.0, np.random.default_rng(0))
@@ -119,6 +124,7 @@ KERNELS: tuple[tuple[str, Callable[[], object]], ...] = (
     ("adaptive steps", _adapt),
     ("rays and light", _senses),
     ("clearances", _gap),
+    ("friction of feet", _feet),
     ("ticks of behaviors", _tick),
     ("competition", _competition),
 )
