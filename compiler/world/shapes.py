@@ -12,7 +12,6 @@ from spec_schema.units import parse_unit
 
 METRE: Final = parse_unit("m")
 RADIAN: Final = parse_unit("rad")
-KILOGRAM: Final = parse_unit("kg")
 STRAIGHT: Final = 1e-9
 """Square metres: what turns by less than this does not turn."""
 

@@ -15,8 +15,6 @@ from spec_schema.expressions.printers.numerals import numeral
 from spec_schema.expressions.printers.postfix import to_postfix
 from spec_schema.expressions.tree import Expr, Number
 
-UNEQUAL = LESS | MORE
-
 
 @final
 class Order:
