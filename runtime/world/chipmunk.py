@@ -200,7 +200,7 @@ class _Request:
     """A request for some fields, and room for the answer, which grows as it must."""
 
     def __init__(self, fields: int) -> None:
-        self.reals: Any = C.pmFloatArrayNew(0)
-        self.whole: Any = C.pmIntArrayNew(0)
+        self.reals: Any = ffi.gc(C.pmFloatArrayNew(0), C.pmFloatArrayFree)
+        self.whole: Any = ffi.gc(C.pmIntArrayNew(0), C.pmIntArrayFree)
         self.data: Any = ffi.new("pmBatchedData *")
         self.data.fields, self.data.floatArray, self.data.intArray = fields, self.reals, self.whole
