@@ -114,15 +114,14 @@ def simulate(
             "--poster, --animate, --watch and --speed are for a scenario; `specc portrait` draws "
             "a behavior"
         )
-    begin, held = assignments(start), assignments(settings)
-    return _behavior(spec, duration or ALONE, begin, held, every, seed, output, form)
+    return _behavior(spec, duration or ALONE, start, settings, every, seed, output, form)
 
 
 def _behavior(
     spec: Path,
     duration: str,
-    begin: dict[str, str],
-    held: dict[str, str],
+    start: list[str],
+    settings: list[str],
     every: str | None,
     seed: int | None,
     output: Path | None,
@@ -132,6 +131,7 @@ def _behavior(
     from specc.files import require_suffix
     from specc.texts import results
 
+    begin, held = assignments(start), assignments(settings)
     require_suffix(output, ".mcap", ".csv")
     warmed(spec)
     program = loading.load_program(spec)
