@@ -19,7 +19,7 @@ from runtime.code import Code
 from runtime.flow import flow_of
 from runtime.interpolation import tabulate
 from runtime.machine import run_tape
-from runtime.program import Coordinate, Program, Role, Term
+from runtime.program import Coordinate, Guard, Program, Role, Term
 from runtime.table import Axis, Method, Table
 from tests.compiler.architecture.exclusions import INPUTS, STEP, Case, N, acting, behavior, wired
 from tests.runtime.behaviors import control, formula_program, state, tabulated
@@ -203,3 +203,18 @@ def test_a_table_over_a_coordinate_is_bounded_where_the_coordinate_may_be() -> N
     assert ends is not None
     assert ends[0] <= 0.0
     assert 4.0 <= ends[1] < 4.1
+
+
+def test_where_a_state_jumps_to_is_in_the_box_and_so_is_how_far_it_goes_from_there() -> None:
+    """y turns back at 1, jumps to -3, and moves by 2 in a period: no farther down than -5."""
+    made = formula_program((state("y", -1.0, 1.0),), {"y": "y 0 ge 2 -2 where"})
+    turns = Guard(0, 0, Code("y 1 sub"), (("y", Code("3 neg")),), "")
+    program = replace(made, field=replace(made.field, guards=(turns,)))
+
+    box, still = (within_a_period(each, box_of(each), 1.0) for each in (program, made))
+
+    assert box is not None
+    assert still is not None
+    assert box["y"][0] <= -5.0
+    assert box["y"][1] >= 3.0
+    assert still["y"][0] > -5.0
