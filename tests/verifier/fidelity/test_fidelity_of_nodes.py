@@ -6,10 +6,13 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from runtime.program import Control, Unit
+from runtime.program import Control, Role, Unit
+from tests.runtime.behaviors import formula_program, state
 from verifier.architectures.telling import controls_as_recorded, with_touches
+from verifier.fidelity.stretches.needs import needs_of
 from verifier.fidelity.verify import verify
 from verifier.report.report import Report, Verdict
+from verifier.traces.trace import TICKS, Series, Trace
 
 TIMES = np.arange(0.0, 10.0, 0.1)
 EVERYWHERE = np.ones(TIMES.size, dtype=np.bool_)
@@ -49,3 +52,17 @@ def test_a_control_that_was_recorded_otherwise_than_the_spec_has_it_is_told(
     )
     assert controls_as_recorded(program, {"gain": np.full(9, 0.5)}) == ()
     assert controls_as_recorded(program, {}) == ()
+
+
+@pytest.mark.parametrize(("clock", "is_noisy"), [("sensor", True), ("log", True), (TICKS, False)])
+def test_what_a_node_sampled_at_its_own_ticks_has_no_noise_beside_what_it_acted_on(
+    clock: str, *, is_noisy: bool
+) -> None:
+    sensed = replace(state("near", 0.0, 1.0), role=Role.SENSED)
+    program = formula_program((state("x", -1.0, 1.0), sensed), {"x": "near"})
+    series = {n: Series(n, TIMES, 0.5 + 0.0 * TIMES, n, clock) for n in ("x", "near")}
+
+    (given,) = needs_of(program, Trace("run", series, {}, 0.0, (), ())).inputs
+
+    assert given.is_sensed
+    assert given.is_noisy is is_noisy
