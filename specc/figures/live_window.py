@@ -115,7 +115,7 @@ def live_window(
     def draw() -> None:
         times, ways, actors = (np.array(each) for each in zip(*past, strict=True))
         seen = tuple(tuple(each) for each in glimpses)
-        moment = Moment(times[-1], latest[0], ways[-1], actors[-1], times, ways, actors, seen)
+        moment = Moment(times[-1], latest[0], ways[-1], actors[-1], ways, actors, seen)
         with look(palette):
             window.show(stage, moment)
 

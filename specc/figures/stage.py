@@ -49,7 +49,7 @@ CORNERS: Final = 20
 class Moment:
     """What is to be seen at one time.
 
-    things (t, 3), robots (r, 3): poses. acting: (r,) as in `Trails`. past, past_robots (m, r, 3),
+    things (t, 3), robots (r, 3): poses. acting: (r,) as in `Trails`. past_robots (m, r, 3),
     past_acting (m, r): the same up to now. glimpses: for each robot what its eyes say; None of one
     that has said nothing yet.
     """
@@ -58,7 +58,6 @@ class Moment:
     things: Array
     robots: Array
     acting: Integers
-    past: Array
     past_robots: Array
     past_acting: Integers
     glimpses: tuple[tuple[Glimpse | None, ...], ...] = ()
@@ -74,7 +73,6 @@ def moment_of(trails: Trails, row: int, tail: float = TAIL) -> Moment:
         things=trails.things[row],
         robots=trails.robots[row],
         acting=trails.acting[row],
-        past=trails.times[marks],
         past_robots=trails.robots[marks],
         past_acting=trails.acting[marks],
         glimpses=tuple(glimpses(said, now) for said in trails.said),
