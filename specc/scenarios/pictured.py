@@ -198,7 +198,10 @@ def trails_of(course: Course, requirements: Sequence[RequirementResult]) -> Trai
 def who_acts(
     architecture: Architecture, track: ActingTrack, times: Array
 ) -> tuple[tuple[str, ...], Integers]:
-    """Who has its way: names, and for each time an index of them, or NOBODY."""
+    """Who has its way: names, and for each time an index of them, or NOBODY.
+
+    Names stand in the order of nodes: who acts in like architectures gets like colours.
+    """
     acting = np.full(len(times), NOBODY, dtype=np.int64)
     if not len(track.times):
         return (), acting
@@ -207,11 +210,18 @@ def who_acts(
         winner(architecture, acts, weights)
         for acts, weights in zip(track.acts, track.weights, strict=True)
     ]
-    names = [name for name in dict.fromkeys(told) if name]
+    order = [node.name for node in architecture.nodes]
+    first = {name: min(map(order.index, _nodes_in(name))) for name in dict.fromkeys(told) if name}
+    names = sorted(first, key=lambda name: first[name])
     places = np.array([names.index(name) if name else NOBODY for name in told], dtype=np.int64)
     seen = rows >= 0
     acting[seen] = places[rows[seen]]
     return tuple(names), acting
+
+
+def _nodes_in(name: str) -> list[str]:
+    """The nodes in what `winner` says."""
+    return name.removeprefix("mostly ").split(" + ")
 
 
 def winner(architecture: Architecture, acts: Booleans, weights: Array) -> str:
