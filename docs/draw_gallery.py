@@ -58,7 +58,8 @@ PLATES: Final = (
     Plate("pendulum", "specs/pendulum.yaml",
           "A cylinder: the angle wraps, paths are cut at the seam, the saddle stands on it."),
     Plate("lorenz", "docs/gallery/lorenz.yaml --axes x,y,z",
-          "Three variables: the unstable manifold of the origin draws the attractor."),
+          "Three variables: the unstable manifold of the origin draws the attractor.",
+          suffix=".png"),
     Plate("keep_left", "specs/keep_left.yaml", "One variable: a phase line."),
     Plate("thesis_3_2", "specs/architectures/thesis_3_2.yaml",
           "Three base behaviors in parallel and their control interfaces (figure 3.2 of the "
@@ -84,8 +85,9 @@ PLATES: Final = (
           "Where only one behavior ever acts, ways are coloured by time. A rectangular robot that "
           "backs up and turns gets stuck (section 2.5 of the thesis).", "simulate", "--poster"),
     Plate("random_walker", "specs/scenarios/random_walker.yaml",
-          "A round one that moves at random does not.", "simulate", "--poster"),
-    Plate("light_subsumption_film", "specs/scenarios/light_subsumption.yaml -d '60 s' --speed 5",
+          "A round one that moves at random does not: a wall holds it for 1.3 s at most.",
+          "simulate", "--poster"),
+    Plate("light_subsumption_film", "specs/scenarios/light_subsumption.yaml -d '55 s' --speed 8",
           "A film: arcs are what range sensors say, somewhere on each is something; the line is "
           "what the robot sees of the light.", "simulate", "--animate", ".gif"),
 )  # fmt: skip
@@ -100,7 +102,8 @@ def draw(plate: Plate) -> None:
 def entry(plate: Plate) -> str:
     """The lines of a plate in the gallery."""
     picture = _file(plate)
-    to = "" if plate.option == "-o" else f" {plate.option} {picture.name}"
+    is_usual = (plate.option, plate.suffix) == ("-o", ".svg")
+    to = "" if is_usual else f" {plate.option} {picture.name}"
     shown = f"![{plate.name}](img/{picture.name})"
     return f"{plate.caption}\n\n`specc {plate.command} {plate.told}{to}`\n\n{shown}\n"
 
