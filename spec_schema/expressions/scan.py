@@ -12,6 +12,7 @@ from typing import final
 
 from spec_schema.expressions.choices import choice_in
 from spec_schema.faults import Fault
+from spec_schema.unit_names import table
 
 LONGEST = 10_000
 """Characters in an expression."""
@@ -59,6 +60,9 @@ BINARY_KEYWORDS = frozenset({"and", "or", "if", "else", "in", "is"})
 POSTFIX = frozenset("²³")
 UNARY = frozenset({"-", "+", "~", "!", "¬", "−", "not"})
 CLOSING = {"(": ")", "[": "]", "{": "}"}
+
+UNIT = re.compile(r"(?P<name>[^\W\d]\w*?)(?:(?:\*\*|\^)-?\d+|[²³])?(?!\w)")
+"""A unit's name with its power, as a quantity has it."""
 
 TOKEN = re.compile(
     r"(?P<space>\s+)"
@@ -119,7 +123,7 @@ def scan(text: str) -> Scan:
     if choice is not None:
         return Scan(None, (choice,))
     strange = [_strange(t) for t in tokens if t.kind == "other"]
-    structure = [] if strange else [*_brackets(tokens), *_order(tokens)]
+    structure = [] if strange else [*_brackets(tokens), *_order(text, tokens)]
     repairs = [
         t.fault(f"'{t.text}' is not an operator here", f"write {REPAIRS[t.text][1]}")
         for t in tokens
@@ -174,7 +178,7 @@ def _brackets(tokens: list[Token]) -> Iterator[Fault]:
     yield from (t.fault(f"'{t.text}' is never closed", f"add '{CLOSING[t.text]}'") for t in opened)
 
 
-def _order(tokens: list[Token]) -> Iterator[Fault]:
+def _order(text: str, tokens: list[Token]) -> Iterator[Fault]:
     """Values and operators must take turns; what is missing is said where it is missing."""
     before: Token | None = None
     needs_value = True
@@ -182,7 +186,10 @@ def _order(tokens: list[Token]) -> Iterator[Fault]:
         if token.text in OPERAND_KEYWORDS or token.text in {":", ":="}:
             return  # none of ours: the parser says what it is
         judge = _missing_value if needs_value else _missing_operator
-        if fault := judge(before, token):
+        fault = judge(before, token)
+        if fault and (literal := _literal_with_unit(text, before, token)):
+            fault = literal
+        if fault:
             yield fault
         needs_value = _needs_value_after(token, needs_value=needs_value)
         before = token
@@ -213,6 +220,25 @@ def _missing_operator(before: Token | None, token: Token) -> Fault | None:
         advice = "write * for a product"
     message = f"an operator is missing between '{before.text}' and '{token.text}'"
     return Fault(before.start, token.end, "S133", message, advice)
+
+
+def _literal_with_unit(text: str, before: Token | None, token: Token) -> Fault | None:
+    """A fault where a unit follows a number: `5 cm`, or `5 m/s**2`."""
+    unit = UNIT.match(text, token.start)
+    if not before or before.kind != "number" or unit is None or unit["name"] not in table():
+        return None
+    end = unit.end()
+    while text[end : end + 1] == "/" and (per := UNIT.match(text, end + 1)):
+        if per["name"] not in table():
+            break
+        end = per.end()
+    advice = (
+        f"name it under `constants` (`margin: {{value: {before.text} {text[token.start : end]}, "
+        f"unit: {text[token.start : end]}}}`) and write `margin` here"
+    )
+    if len(token.text) == 1:
+        advice += f"; for a product with '{token.text}' write {before.text}*{token.text}"
+    return Fault(before.start, end, "S133", "a number in an expression has no unit", advice)
 
 
 def _needs_value_after(token: Token, *, needs_value: bool) -> bool:

@@ -14,6 +14,13 @@ from spec_schema.faults import ExpressionError, Fault
 from spec_schema.names import FUNCTIONS as RESERVED_FUNCTIONS
 
 TEXT = "a text can only be compared with a discrete variable, by == or !="
+BARE = "a number in an expression has no unit"
+
+
+def named(number: str, unit: str) -> str:
+    """The help where a unit follows a number."""
+    constant = f"margin: {{value: {number} {unit}, unit: {unit}}}"
+    return f"name it under `constants` (`{constant}`) and write `margin` here"
 
 
 def faults(text: str) -> tuple[Fault, ...]:
@@ -137,6 +144,12 @@ def test_every_operation_knows_its_operator() -> None:
         ("~a", "~", "'~' is not part of the language", "write not"),
         ("a is b", "a is b", "'is' is not part of the language", "write =="),
         ("2x", "2x", "an operator is missing between '2' and 'x'", "write 2*x"),
+        ("front > danger + 5 cm", "5 cm", BARE, named("5", "cm")),
+        ("ahead < 30deg", "30deg", BARE, named("30", "deg")),
+        ("v > 5 ms/cm**2 - x", "5 ms/cm**2", BARE, named("5", "ms/cm**2")),
+        ("v > 5 mm/x", "5 mm", BARE, named("5", "mm")),
+        ("v > 2 m", "2 m", BARE, named("2", "m") + "; for a product with 'm' write 2*m"),
+        ("x cm", "x cm", "an operator is missing between 'x' and 'cm'", "write * for a product"),
         ("x y", "x y", "an operator is missing between 'x' and 'y'", "write * for a product"),
         ("(a) b", ") b", "an operator is missing between ')' and 'b'", "write * for a product"),
         ("2(x)", "2", "'2' is not a function", "write * for a product"),
