@@ -51,7 +51,8 @@ def course_to(question: Question, timing: Timing, steps: list[Step]) -> Reached:
         ticks |= {(step.at, d): tick for d, tick in step.ticks.items()}
         place = step.parent
     course = _Course(question, timing, steps[-1].at, ticks)
-    taken = [(time, d, ticks[time, d].taken) for time, d in sorted(ticks)]
+    counting = (key for key in sorted(ticks) if course.counts(*key))
+    taken = [(time, d, ticks[time, d].taken) for time, d in counting]
     return Reached(course.at, list(course.decisions()), moments(question, timing, taken))
 
 
@@ -64,6 +65,11 @@ class _Course:
     timing: Timing
     at: int
     ticks: Mapping[tuple[int, int], Tick]
+
+    def counts(self, time: int, place: int) -> bool:
+        """Whether a tick comes early enough for what is in effect at the end."""
+        sampled = self.timing.sample(place, self.at)
+        return sampled is not None and time <= sampled
 
     def decisions(self) -> Iterator[Decision]:
         """What lets both act, and of each combined behavior why it does not act instead."""

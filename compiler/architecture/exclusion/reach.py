@@ -17,9 +17,12 @@ from compiler.architecture.exclusion.memory import Memory, decided
 from compiler.architecture.exclusion.overlap import Timing
 from compiler.architecture.exclusion.question import Actor, Question
 from compiler.architecture.exclusion.readable import Pattern, patterns
+from compiler.architecture.exclusion.witness import help_of
 from spec_schema.wording import listed
 
 MOST_TRIED: Final = 100_000
+MOST_UNTOLD: Final = 100
+"""Ways to an end that need more readings than sensors tell, before no other is looked for."""
 
 
 @final
@@ -50,6 +53,7 @@ class _Visit:
         self._is_open = False
         self._tried = 0
         self._steps: list[Step] = []
+        self._untold: list[Reached] = []
 
     def run(self) -> Reached | Proof | Undecided:
         """Visit all states."""
@@ -65,16 +69,21 @@ class _Visit:
             for after, step in self._after(at, before, parent):
                 self._tried += 1
                 if self._both_act(after):
-                    self._steps.append(step)
-                    found = course_to(self._question, self._timing, self._steps)
-                    return found if self._is_told(found) else self._slow()
+                    found = course_to(self._question, self._timing, [*self._steps, step])
+                    if self._is_told(found):
+                        return found
+                    self._untold.append(found)
+                    if len(self._untold) == MOST_UNTOLD:
+                        return self._slow(self._untold[0])
                 key = ((phase + 1) % len(phases), _waited(after, lasts))
                 if key not in seen:
                     seen.add(key)
                     self._steps.append(step)
                     queue.append((at + lasts, key[1], len(self._steps) - 1))
             if self._tried > MOST_TRIED or self._is_open:
-                return self._open()
+                return self._slow(self._untold[0]) if self._untold else self._open()
+        if self._untold:
+            return self._slow(self._untold[0])
         names = [self._question.deciders[d].name for d in self._used]
         reason = (
             f"of all that {listed(names, last='and')} can remember, nothing that is ever reached "
@@ -138,12 +147,14 @@ class _Visit:
                     return False
         return True
 
-    def _slow(self) -> Undecided:
+    def _slow(self, found: Reached) -> Undecided:
         names = [signal.name for signal in self._question.signals if signal.every > 0.0]
+        verb = "does" if len(names) == 1 else "do"
         return Undecided(
             "both would act if what they sense changed between any two ticks, which "
-            f"{listed(names, last='and')} does not",
-            "give both the same period and response_time, or let one arbiter choose",
+            f"{listed(names, last='and')} {verb} not",
+            help_of(self._question, found.decisions)
+            or "give both the same period and response_time, or let one arbiter choose",
         )
 
     def _open(self) -> Undecided:

@@ -53,7 +53,7 @@ def told(
         samples=tuple(sample for sample in samples if sample.effects),
         assumed=tuple(dict.fromkeys(_assumed(question, decisions))),
         inputs=inputs,
-        help=_help(question, decisions),
+        help=help_of(question, decisions),
     )
 
 
@@ -205,8 +205,8 @@ def _assumed_of_reading(
         yield Reading(f"{decider.name}'s {entry.name}", value, entry.unit, label).text
 
 
-def _help(question: Question, decisions: list[Decision]) -> str:
-    """What would mend it."""
+def help_of(question: Question, decisions: list[Decision]) -> str:
+    """What would mend it; empty where that is not seen from the decisions."""
     if question.unless:
         who = listed([actor.name for actor in question.unless])
         parts = f"{question.first.name} and {question.second.name}"

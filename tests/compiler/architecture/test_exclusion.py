@@ -194,6 +194,15 @@ REFUTED: dict[str, Case] = {
     ),
 }
 
+REFUTED["one choice for both, of an arbiter that remembers, by a late sensor"] = wired(
+    [
+        acting("first", response=STEP),
+        acting("second", period=2 * STEP, response=STEP),
+        choosing("choose", HYSTERESIS, (("first",), ("second", "first")), response=STEP),
+    ],
+    ((1, 1), (2, 1)),
+)
+
 
 @pytest.mark.parametrize("name", PROVED)
 def test_exclusion_is_proved(name: str) -> None:
@@ -206,6 +215,35 @@ def test_exclusion_is_refuted_with_a_state_that_the_scheduler_reaches(name: str)
 
     assert isinstance(answer, Witness)
     assert REFUTED[name].replayed(answer)
+
+
+@pytest.mark.parametrize("late", range(4))
+def test_a_sensor_may_be_as_late_as_it_likes_where_one_choice_lets_both_act(late: int) -> None:
+    known = REFUTED["one choice for both, of an arbiter that remembers, by a late sensor"]
+    case = replace(known, sensors=((1, late), (2, late)))
+
+    answer = decide(case.question)
+
+    assert isinstance(answer, Witness)
+    assert answer.text == (
+        "first and second both act at 0.01 s: at 0 s a.r is 1 (choose chooses go from 0.01 s)"
+    )
+    assert "let choice go of choose name one of them" in answer.help
+    assert case.replayed(answer)
+
+
+def test_one_choice_for_both_is_named_even_where_no_run_to_it_is_found() -> None:
+    rules: list[tuple[int, str | None, str | None, float]] = [
+        (0, "p 0.5 ge", None, 0.0),
+        (1, "p 1 gt", "p 1.5 gt", 0.0),
+    ]
+    choose = choosing("choose", rules, (("first",), ("second", "first")))
+
+    answer = decide(wired([acting("first"), acting("second"), choose], ((8, 0), (1, 0))).question)
+
+    assert isinstance(answer, Undecided)
+    assert answer.reason.endswith("between any two ticks, which a.r and b.r do not")
+    assert "let choice go of choose name one of them" in answer.help
 
 
 def test_weights_exclude_where_no_point_has_both_above_zero() -> None:
