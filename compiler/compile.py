@@ -171,7 +171,9 @@ def _with_tables(
     except TableError as error:
         message, remedy = error.message, error.remedy
         if field.formula is not None and error.code in MENDED_BY_CODE:
-            remedy += "; or keep the formula as code: `table: {keep: code}`"
+            keep = "keep the formula as code: `table: {keep: code}`"
+            # Smaller domains and more budget rarely save a table that is far too fine.
+            remedy = f"{keep}; or {remedy}" if error.code == "S241" else f"{remedy}; or {keep}"
         if checked.design is not None:
             remedy, message = SMOOTHER, message + narrowest_gap(checked.design)
         findings.error(error.code, _path_of(error, checked), message, remedy, key=True)

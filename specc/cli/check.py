@@ -66,6 +66,7 @@ def check(
     `specc check specs/architectures/ --notes`
     """
     files = _files(paths)
+    is_bare = notes is False
     if notes is None:
         notes = form is ReportFormat.TEXT and len(files) <= TOLD
     found, made = _checked(files)
@@ -80,7 +81,8 @@ def check(
     if form is ReportFormat.TEXT:
         further = "; `specc compile` makes the tables of fields, and looks at their values"
         done = f"{_specs(len(files))} without mistakes"
-        say(done + further * bool(notes and made), "bold green")
+        is_open = not is_bare and (made or len(files) > 1)
+        say(done + further * bool(is_open), "bold green")
     return Status.YES
 
 
