@@ -15,6 +15,7 @@ from specc.texts.scenario_runs import (
     requirement_rows,
 )
 from specc.verifying.architecture import NotJudged
+from specc.verifying.recording import REQUIREMENTS
 from specc.verifying.runs import (
     Outcome,
     Pool,
@@ -32,10 +33,14 @@ from verifier.report.layout import bullets, section, table, wide_table, wrapped
 from verifier.report.report import Report, Verdict
 from verifier.report.wording import percent, seconds, shown
 
-BY_ITSELF = (
-    "Each recording by itself: `--format json`, or `-o report.html`. A node FAILs where it fails"
-    " in one recording, else it has the verdict on all together."
+BY_ITSELF: Final = (
+    "Each recording by itself, and which faults a PASS would have caught: `--format json`, or"
+    " `-o report.html`."
 )
+FAILS: Final = (
+    "A node FAILs where it fails in one recording, else it has the verdict on all together."
+)
+CAUGHT: Final = "Which faults a PASS would have caught: `--format json`, or `-o report.html`."
 
 MOST_OPEN: Final = 3
 """So many reasons are told of why a verdict is open."""
@@ -52,6 +57,7 @@ def runs_table(runs: Runs) -> str:
         for part in (
             *_scenarios(runs),
             _plain(runs),
+            wrapped(_footer(runs), ""),
             section("why", [wrapped(reason) for reason in reasons_of(runs)]),
             section("note", [bullets(remarks_of(runs))]),
             section("next", [bullets(_advice(runs))]),
@@ -83,8 +89,14 @@ def _scenarios(runs: Runs) -> Iterator[str]:
     nodes = [*node_rows(runs)]
     if nodes:
         yield wide_table([NODE_TITLES, *nodes])
-    if pools_of_nodes(runs):
-        yield wrapped(BY_ITSELF, "")
+
+
+def _footer(runs: Runs) -> str:
+    """What a table of verdicts has no room for, and where it stands."""
+    if all(each.part == REQUIREMENTS for each in verifications(runs.outcomes)):
+        return ""  # nothing is planted where only requirements are judged
+    told = CAUGHT if is_of_one(runs.outcomes) else BY_ITSELF
+    return f"{told} {FAILS}" if pools_of_nodes(runs) else told
 
 
 def _lines(row: RequirementRow) -> list[tuple[str, ...]]:

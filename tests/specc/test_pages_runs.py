@@ -57,6 +57,14 @@ def test_the_text_tells_first_which_recording_fails_and_why(runs: Runs) -> None:
     assert [after.index(part) for part in order] == sorted(after.index(part) for part in order)
 
 
+def test_a_table_says_where_the_planted_faults_stand_that_it_has_no_room_for(runs: Runs) -> None:
+    text = runs_table(runs)
+
+    told = text.index("which faults a PASS would have caught: `--format json`")
+    assert text.index("torn.mcap") < told < text.index("\nwhy\n")
+    assert "which faults" not in runs_table(Runs(runs.outcomes[1:2], ()))
+
+
 def test_where_one_recording_fails_no_more_data_is_asked_for(runs: Runs) -> None:
     advice = runs.pools[0].report.advice[0]
     good = runs.pools[0].members[0]
