@@ -14,6 +14,9 @@ from spec_schema.units import Unit, parse_unit, quantity_in
 ONE = Unit("1", 1.0, DIMENSIONLESS)
 SECOND = Unit("s", 1.0, (Fraction(0), Fraction(0), Fraction(1), *(Fraction(0),) * 4))
 
+LONG = 5.0
+"""Seconds: a robot's time that is written without a unit and is as long as this was meant in ms."""
+
 
 def unit_of(text: str | None, path: Path, findings: Findings) -> Unit | None:
     """The unit that a text means; None, and a finding, where it means none."""
@@ -37,6 +40,23 @@ def si_value(value: float | str, unit: Unit | None, path: Path, findings: Findin
     except UnitFault as error:
         findings.fault(path, error.fault)
         return None
+
+
+def si_time(value: float | str, path: Path, findings: Findings) -> float | None:
+    """A robot's time in seconds; None where it can't be told, or was probably meant in ms."""
+    if is_without_ms(value, path, findings):
+        return None
+    return si_value(value, SECOND, path, findings)
+
+
+def is_without_ms(value: float | str, path: Path, findings: Findings) -> bool:
+    """Whether milliseconds were probably meant, and a finding where they were."""
+    if isinstance(value, str) or value < LONG:
+        return False
+    message = f"a plain number is in seconds: did you mean {value:g} ms?"
+    remedy = f"write '{value:g} ms', or '{value:g} s' if that is meant"
+    findings.error("S212", path, message, remedy)
+    return True
 
 
 def si_within(

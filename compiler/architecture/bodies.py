@@ -8,7 +8,7 @@ from typing import Final, final
 
 from compiler.findings import Findings
 from compiler.lower_parts import origin_of
-from compiler.quantities import SECOND, si_value
+from compiler.quantities import is_without_ms, si_time, si_value
 from compiler.world.shapes import RADIAN, heights_of, length, pose_of, positive, shape_of
 from runtime.program import Kind, Unit
 from runtime.world.model import Body, Drive, DriveKind, Reading, Sensor, SensorKind
@@ -141,7 +141,7 @@ def _sensor(
     reach = 0.0
     if spec.reach is not None:
         reach = positive(spec.reach, "m", "a reach", (*path, "reach"), findings)
-    latency = si_value(spec.latency, SECOND, (*path, "latency"), findings) or 0.0
+    latency = si_time(spec.latency, (*path, "latency"), findings) or 0.0
     if latency < 0.0:
         message = f"a latency can't be below 0 (got {spec.latency})"
         findings.error("S212", (*path, "latency"), message, "write how much later it says it")
@@ -155,11 +155,17 @@ def _sensor(
         height=middle if spec.height is None else length(spec.height, (*path, "height"), findings),
         of=spec.of,
         slip=spec.slip,
-        every=positive(spec.every, "s", "the time between samples", (*path, "every"), findings),
+        every=_every(spec, (*path, "every"), findings),
         latency=max(latency, 0.0),
         readings=_readings(spec, reach, path, findings),
         origin=loaded.origin(path),
     )
+
+
+def _every(spec: SensorSpec, path: Path, findings: Findings) -> float:
+    if is_without_ms(spec.every, path, findings):
+        return 1.0
+    return positive(spec.every, "s", "the time between samples", path, findings)
 
 
 def _width(spec: SensorSpec, path: Path, findings: Findings) -> float:

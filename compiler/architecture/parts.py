@@ -8,7 +8,7 @@ from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.bodies import FAR, BodyPart, lower_body
 from compiler.architecture.library import Library
 from compiler.findings import Findings
-from compiler.quantities import SECOND, si_value, unit_of
+from compiler.quantities import si_time, unit_of
 from runtime.arbiter import Arbiter, Paradigm
 from runtime.program import Control, Kind, Program, Role, State, Unit
 from spec_schema.arbiter import ArbiterSpec
@@ -229,11 +229,11 @@ def _of_number(name: str, unit: Unit) -> Entry:
 
 
 def _times(spec: NodeSpec, path: Path, findings: Findings) -> tuple[float, float]:
-    period = si_value(spec.period, SECOND, (*path, "period"), findings)
+    period = si_time(spec.period, (*path, "period"), findings)
     if period is not None and period <= 0.0:
         message = f"a period must be above 0 (got {spec.period})"
         findings.error("S212", (*path, "period"), message, "write 'period: 50 ms'")
-    response = si_value(spec.response_time, SECOND, (*path, "response_time"), findings) or 0.0
+    response = si_time(spec.response_time, (*path, "response_time"), findings) or 0.0
     if response < 0.0:
         message = f"nothing acts before it samples (got {spec.response_time})"
         findings.error("S212", (*path, "response_time"), message, "write 0 or more")

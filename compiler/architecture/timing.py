@@ -23,6 +23,8 @@ and period + response_time, in the mean half a period less (Michiels, Niculescu 
 
 SLACK: Final = 1e-6
 """Relative: what differences miss of a Jacobian."""
+ROUND: Final = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+"""What is proposed, times a power of ten: from 10 ms on all are multiples of 5 ms."""
 POINTS: Final = 600
 SEED: Final = 20261122
 
@@ -234,6 +236,6 @@ def reach_of(
 
 
 def _rounded(value: float) -> float:
-    """A time that is easy to write: two digits, rounded down."""
-    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return math.floor(value / digit + 1e-9) * digit
+    """A time that is easy to write and to share a step with, rounded down."""
+    power = 10.0 ** math.floor(math.log10(value) + 1e-9)
+    return max(n for n in ROUND if n <= value / power + 1e-9) * power

@@ -210,6 +210,41 @@ def test_a_node_is_late_by_the_rate_of_its_field(make: Make) -> None:
     assert codes(make({"avoid": late})) == {"S353"}
 
 
+def remedies(path: Path, code: str) -> list[str]:
+    with pytest.raises(SpecError) as caught:
+        compile_architecture(path, in_silence)
+    return [found.help for found in caught.value.diagnostics if found.code == code]
+
+
+def test_a_time_that_is_proposed_shares_a_long_step_with_others(make: Make) -> None:
+    """0.29 s are left of the 0.5 s of avoid: 290 ms and 210 ms share 10 ms, 250 ms do better."""
+    late = node("avoid", f"{AVOID}, response_time: 0.21 s", "0.4 s")
+
+    [remedy] = remedies(make({"avoid": late}), "S353")
+    assert remedy.startswith("write 'period: 250 ms' or less")
+
+
+@pytest.mark.parametrize(
+    "times", [{"period": "100"}, {"more": "response_time: 5"}, {"period": "20", "more": ""}]
+)
+def test_a_long_time_without_a_unit_was_meant_in_milliseconds(
+    make: Make, times: dict[str, str]
+) -> None:
+    more = f", {times['more']}" if times.get("more") else ""
+    bare = node("avoid", AVOID + more, times.get("period", "50 ms"))
+    meant = times.get("period", "5")
+
+    assert codes(make({"avoid": bare})) == {"S212"}
+    assert remedies(make({"avoid": bare}), "S212") == [
+        f"write '{meant} ms', or '{meant} s' if that is meant"
+    ]
+
+
+def test_a_time_with_its_unit_or_below_five_is_what_it_says(make: Make) -> None:
+    for period in ("100 s", "4.9"):
+        assert codes(make({"avoid": node("avoid", AVOID, period)})) == {"S353"}
+
+
 PLAN = """
 specc: 1
 kind: behavior
