@@ -39,7 +39,7 @@ class Planned:
     """One fault with the sizes to try: `sizes` (S,) ascending, SI; `guess`: where to begin.
 
     target: its place among the predicted states for a gain or an offset of a rate, among the
-    inputs for a delay. Of a sensor, `is_input` tells which of the two.
+    inputs for a delay; of a sensor, either.
     can_act: False where the field reads nothing that the fault touches.
     """
 
@@ -47,7 +47,6 @@ class Planned:
     variable: str
     unit: Unit
     target: int
-    is_input: bool
     can_act: bool
     sizes: Array
     guess: int
@@ -111,12 +110,10 @@ def _of_input(
     if np.count_nonzero(np.diff(given.series.values)) >= FEW_CHANGES:
         horizon = study.plan.windows.horizon
         guess = _telling_delay(fidelity, study, given, i)
-        found.append(_planned(Fault.DELAY, part, SECOND, i, guess, horizon, is_input=True))
+        found.append(_planned(Fault.DELAY, part, SECOND, i, guess, horizon))
     if isinstance(part, State):
         width = part.high - part.low
-        found.append(
-            _planned(Fault.SENSOR, part, part.unit, i, width / 50.0, width / 4.0, is_input=True)
-        )
+        found.append(_planned(Fault.SENSOR, part, part.unit, i, width / 50.0, width / 4.0))
     return found
 
 
@@ -157,14 +154,13 @@ def _planned(  # one row of a table
     guess: float,
     most: float,
     *,
-    is_input: bool = False,
     can_act: bool = True,
 ) -> Planned:
     top = min(guess * RATIO**ABOVE, most)
     sizes = [_rounded(top * RATIO**-k / unit.scale) * unit.scale for k in range(RUNGS)]
     ladder = np.array(sizes[::-1])
     begin = int(np.clip(np.searchsorted(ladder, guess), 0, RUNGS - 1))
-    return Planned(fault, part.name, unit, target, is_input, can_act, ladder, begin, part.origin)
+    return Planned(fault, part.name, unit, target, can_act, ladder, begin, part.origin)
 
 
 def _rounded(value: float) -> float:
