@@ -49,7 +49,19 @@ def sentence_of(result: RequirementResult, decides: Deciding | None, told: Told)
         return str(result.outcome)
     if _is_discrete(decides, told):
         return _of_discrete(result, decides, told)
-    return f"{result.outcome}{_by(result)} at {_when_and_where(decides, told)}"
+    where = _when_and_where(decides, told)
+    never = _never(result) if part.formula.operator is Operator.EVENTUALLY else ""
+    if never:
+        return f"{result.outcome}{_by(result)}: {never} never came (nearest at {where})"
+    return f"{result.outcome}{_by(result)} at {where}"
+
+
+def _never(result: RequirementResult) -> str:
+    """What a lone `eventually` waited for in vain; empty where it came, or missed by nothing."""
+    if result.outcome is not Outcome.VIOLATED or abs(result.robustness) <= TIED:
+        return ""
+    awaited = _bare(result.text.strip()).removeprefix("eventually").strip()
+    return _bare(WINDOW.sub("", awaited))
 
 
 def _of_discrete(result: RequirementResult, decides: Deciding, told: Told) -> str:
