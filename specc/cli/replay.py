@@ -25,7 +25,8 @@ def replay(
     """Look at a recorded run: draw a poster or a film of it, or watch it in the terminal.
 
     Everything comes from the recording: what is drawn is what was recorded, and no spec is needed.
-    Without an option it is watched. `specc verify` judges it.
+    Without an option it is watched. It looks only, so the exit status is 0 where a requirement is
+    violated too, for which `specc simulate` exits with 1; `specc verify` judges it.
 
     **Examples**
 

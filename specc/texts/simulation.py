@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from runtime.architecture import Architecture, Way
 from runtime.recording.resolutions import shares_of
 from runtime.recording.tracks import Happening, RobotTrack
 from runtime.run import Run
@@ -15,7 +16,7 @@ from specc.scenarios.simulating import Simulation
 from verifier.report.layout import INDENT, section, table
 from verifier.report.requirement_record import requirements_record, requirements_text
 from verifier.report.requirement_results import Outcome, RequirementResult
-from verifier.report.wording import number, percent, percents, seconds
+from verifier.report.wording import listed, number, percent, percents, seconds
 
 MILLIMETRES: Final = 1e3
 MOST_NAMED: Final = 4
@@ -125,13 +126,27 @@ def _touched_text(run: Run, place: int) -> str:
 def _node_rows(run: Run, place: int) -> Iterator[tuple[str, str]]:
     architecture = run.scenario.robots[place].architecture
     shares = acting_shares(run.robots[place], run.duration)
+    blended = _blended(architecture)
     for node, share in zip(architecture.nodes, shares, strict=True):
         if node.behavior >= 0:
             yield f"{node.name} acted", f"{percent(share)} of the time"
+    if blended:
+        yield "in a blend", f"{listed(blended)} act all at once; their shares stand below"
     for channel, drivers in driving_shares(run, place).items():
         parts = zip(drivers, percents([*drivers.values()]), strict=True)
         told = [f"{name} {share}" for name, share in parts]
         yield f"{channel} driven by", ", ".join(told)
+
+
+def _blended(architecture: Architecture) -> list[str]:
+    """The nodes that are mixed on a channel."""
+    mixed = {
+        node
+        for channel in architecture.channels
+        if channel.resolution.way is Way.BLEND
+        for node in channel.resolution.nodes
+    }
+    return [architecture.nodes[node].name for node in sorted(mixed)]
 
 
 def _audit_rows(run: Run) -> Iterator[tuple[str, str]]:

@@ -54,6 +54,19 @@ def test_a_recording_gives_the_same_poster_without_a_run(made: Path) -> None:
     assert len(again.read_bytes()) == pytest.approx(len((made / "run.svg").read_bytes()), abs=200)
 
 
+def test_of_a_blend_all_act_and_looking_again_at_a_violation_is_no_failure(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, poster = str(tmp_path / "run.mcap"), str(tmp_path / "run.svg")
+    assert main(["simulate", "specs/scenarios/light_dynamics.yaml", "-d", "1", "-o", path]) == 1
+    assert "avoid, seek and wander act all at once; their shares" in capsys.readouterr().out
+
+    assert main(["replay", path, "--poster", poster]) == 0
+    assert "1 of 1 requirement violated" in capsys.readouterr().out
+    assert main(["simulate", FIRST_LIGHT, "-d", "1"]) in {0, 4}
+    assert "in a blend" not in capsys.readouterr().out
+
+
 def test_python_draws_what_the_command_draws(made: Path, tmp_path: Path) -> None:
     specc.draw_run(made / "run.mcap", tmp_path / "run.svg")
     specc.film_run(made / "run.mcap", tmp_path / "run.gif", speed=4)
