@@ -23,7 +23,7 @@ from spec_schema.requirement_sentences import (
     read_requirement,
 )
 from spec_schema.requirement_words import RequirementError
-from spec_schema.suggest import did_you_mean
+from spec_schema.suggest import did_you_mean, did_you_mean_one_of
 from spec_schema.units import Unit, parse_quantity
 from spec_schema.wording import number
 
@@ -87,7 +87,7 @@ def _meant(name: str, known: Mapping[str, Measured]) -> str:
         return meant
     ending = [other for other in known if other.endswith(f".{name.rpartition('.')[2]}")]
     if ending:
-        return f"did you mean {' or '.join(ending[:MOST_NAMED])}?"
+        return did_you_mean_one_of(ending[:MOST_NAMED])
     owner = name.partition(".")[0]
     beside = sorted(other for other in known if other.partition(".")[0] == owner) or sorted(known)
     more = ", ..." if len(beside) > MOST_NAMED else ""

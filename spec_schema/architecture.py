@@ -142,6 +142,16 @@ ExclusiveSpec: TypeAlias = Annotated[
 
 WAYS: Final = ("exclusive", "sum", "blend", "priority", "function")
 
+EXAMPLES: Final = {
+    "exclusive": "{exclusive: [seek, avoid]} with your nodes, or {exclusive: choose} with your "
+    "arbiter",
+    "sum": "{sum: [seek, avoid]} with your nodes",
+    "blend": "{blend: choose} with your arbiter",
+    "priority": "{priority: [avoid, seek]} with your nodes",
+    "function": "{function: modules:mix} with your Python function",
+}
+"""What to write where nothing but the way is named."""
+
 
 @final
 class ResolutionSpec(StrictModel):
@@ -177,11 +187,11 @@ class ResolutionSpec(StrictModel):
     def _is_mapping(cls, value: object) -> object:
         """A way and its nodes without the brackets that make a mapping of them."""
         if isinstance(value, str):
-            way, _, rest = value.partition(" ")
-            meant = f"exclusive: {value}" if value.isidentifier() else "exclusive: choose"
-            meant = f"{way}: {rest.strip()}" if way in WAYS and rest else meant
-            message = f"expected a mapping, got {described(value)}"
-            raise refused("S103", message, f"write {{{meant}}}")
+            way, _, rest = value.strip().partition(" ")
+            meant = f"{{exclusive: {value}}}" if value.isidentifier() else EXAMPLES["exclusive"]
+            if way in WAYS:
+                meant = f"{{{way}: {rest.strip()}}}" if rest else EXAMPLES[way]
+            raise refused("S103", f"expected a mapping, got {described(value)}", f"write {meant}")
         return value
 
     @model_validator(mode="after")

@@ -27,7 +27,17 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
 def did_you_mean(word: str, candidates: Iterable[str]) -> str:
     """`did you mean 'gain'?`, or nothing."""
     known = nearest(word, candidates)
-    return f"did you mean '{known}'?" if known else ""
+    return did_you_mean_one_of([known] if known else [])
+
+
+def did_you_mean_one_of(names: Sequence[str]) -> str:
+    """The same of names that are found in another way.
+
+    >>> did_you_mean_one_of(["gain", "goal"]), did_you_mean_one_of([])
+    ("did you mean 'gain' or 'goal'?", '')
+    """
+    quoted = " or ".join(f"'{name}'" for name in names)
+    return f"did you mean {quoted}?" if names else ""
 
 
 def distance(a: str, b: str) -> int:

@@ -8,9 +8,10 @@ from compiler.world.overlap import narrowest, overlap, within
 from runtime.scenario import Robot
 from runtime.world.model import Polygon, Sensor, Shape, World
 from spec_schema.places import Path
-from spec_schema.suggest import did_you_mean, there_are
+from spec_schema.suggest import did_you_mean_one_of, nearest, there_are
 
 LIGHT: Final = "light"
+MOST_NAMED: Final = 3
 LEEWAY: Final = 1e-3
 """Relative: what widths miss that are measured a degree apart."""
 
@@ -81,8 +82,24 @@ def _tell(
     names: Sequence[str],
     findings: Findings,
 ) -> None:
-    message = f"{sensor.name} of {robot.name} looks for '{wanted}', and {world.name} has none"
-    remedy = did_you_mean(wanted, names) or there_are(names)
+    message = (
+        f"{sensor.name} of {robot.name} looks for '{wanted}' (`of` in {_place(sensor.origin)}), "
+        f"and {world.name} has none"
+    )
+    remedy = _meant(wanted, names) or there_are(names)
     if f"{wanted}_*" in names:
         remedy = f"write '{wanted}_*' for all copies that are scattered"
     findings.error("S322", ("robots", robot.name), message, remedy, key=True)
+
+
+def _place(origin: str) -> str:
+    """The file and line of an origin: `courier.yaml:12`."""
+    return origin.rpartition("/")[2].rpartition(":")[0]
+
+
+def _meant(wanted: str, names: Sequence[str]) -> str:
+    """The name that was meant: alike, or for all copies of a scatter, or longer by an ending."""
+    bare = {name.removesuffix("_*"): name for name in names}
+    alike = nearest(wanted, names) or bare.get(nearest(wanted, bare) or "")
+    longer = [name for name in names if name.startswith(f"{wanted}_")]
+    return did_you_mean_one_of([alike] if alike else longer[:MOST_NAMED])

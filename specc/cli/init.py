@@ -14,7 +14,9 @@ def init(
     template: Annotated[
         str, typer.Option("--template", "-t", help="Which template to begin with.")
     ] = "van_der_pol",
-    listing: Annotated[bool, typer.Option("--list", help="List the templates.")] = False,
+    listing: Annotated[
+        bool, typer.Option("--list", "--templates", help="List the templates.")
+    ] = False,
     log: Annotated[
         Path | None,
         typer.Option(

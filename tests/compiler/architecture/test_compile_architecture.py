@@ -216,6 +216,24 @@ def remedies(path: Path, code: str) -> list[str]:
     return [found.help for found in caught.value.diagnostics if found.code == code]
 
 
+@pytest.mark.parametrize(
+    ("written", "remedy"),
+    [
+        ("exclusive", "write {exclusive: [seek, avoid]} with your nodes, or {exclusive: choose} "
+         "with your arbiter"),
+        ("blend", "write {blend: choose} with your arbiter"),
+        ("sum [avoid, seek]", "write {sum: [avoid, seek]}"),
+        ("pick", "write {exclusive: pick}"),
+    ],
+)  # fmt: skip
+def test_a_way_without_braces_is_answered_by_one_that_can_be_written(
+    make: Make, written: str, remedy: str
+) -> None:
+    path = make({"avoid": node("avoid", AVOID)}, f"{{base.turn: '{written}'}}")
+
+    assert remedies(path, "S103") == [remedy]
+
+
 def test_a_time_that_is_proposed_shares_a_long_step_with_others(make: Make) -> None:
     """0.29 s are left of the 0.5 s of avoid: 290 ms and 210 ms share 10 ms, 250 ms do better."""
     late = node("avoid", f"{AVOID}, response_time: 0.21 s", "0.4 s")

@@ -43,6 +43,57 @@ def codes(path: Path) -> list[str]:
     return [found.code for found in check(path)]
 
 
+LOOKS = """
+specc: 1
+kind: body
+name: looker
+shape: {circle: 10 cm}
+mass: 3 kg
+drive: {differential: {track: 20 cm, speed: 0.5 m/s, turn: 3 rad/s}}
+sensors:
+  ahead: {senses: range, reach: 2 m}
+  eye: {senses: sight, of: [NAME], reach: 3 m}
+"""
+POLES = """
+specc: 1
+kind: world
+name: poles
+arena: {box: [4, 3]}
+things:
+  post_west: {shape: {circle: 5 cm}, at: [1, 2], fixed: true}
+  post_east: {shape: {circle: 5 cm}, at: [3, 2], fixed: true}
+scatter: {poles: {count: 2, shape: {circle: 5 cm}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("pole", "did you mean 'poles_*'?"),
+        ("post", "did you mean 'post_west' or 'post_east'?"),
+        ("post_wast", "did you mean 'post_west'?"),
+        ("crate", "there are light, post_west, post_east, poles_*, r"),
+    ],
+)
+def test_what_a_sensor_looks_for_in_vain_is_told_with_its_place_and_what_was_meant(
+    tmp_path: Path, name: str, remedy: str
+) -> None:
+    (tmp_path / "looker.yaml").write_text(LOOKS.replace("NAME", name), encoding="utf-8")
+    (tmp_path / "poles.yaml").write_text(POLES, encoding="utf-8")
+    (tmp_path / "looks.yaml").write_text(
+        "specc: 1\nkind: architecture\nname: looks\nbody: looker.yaml\nnodes:\n"
+        f"  avoid: {{behavior: {PARTS}/avoid.yaml, period: 50 ms, "
+        "sense: {clearance: {from: ahead.range, outside: clip}}}\n",
+        encoding="utf-8",
+    )
+    path = scenario(tmp_path, "{r: {architecture: looks.yaml, at: [2, 1]}}")
+    path.write_text(path.read_text("utf-8").replace(f"{PARTS}/office", "poles"), "utf-8")
+
+    [found] = [one for one in check(path) if one.code == "S322"]
+    assert found.help == remedy
+    assert f"looks for '{name}' (`of` in looker.yaml:10)" in found.message
+
+
 def test_the_step_is_the_longest_that_divides_every_time(first_light: CompiledScenario) -> None:
     """Periods 50 and 100 ms, sensors 50 and 20 ms: 10 ms is shared, and 1/240 s the limit."""
     found = first_light.scenario
