@@ -24,7 +24,7 @@ from tests.verifier.fidelity.switching_robots import (
 from verifier.fidelity.verify import judgement_of, verify
 from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.switching import Switching, SwitchSort, Way
-from verifier.traces.trace import Trace
+from verifier.traces.trace import TICKS, Series, Trace
 
 SPECS = Path(__file__).parents[3] / "specs"
 
@@ -434,3 +434,44 @@ def test_a_log_that_is_cut_short_is_no_mishap(patrol: Program, samples: int) -> 
     }
 
     assert verify(patrol, replace(whole, series=cut)).verdict is Verdict.INCONCLUSIVE
+
+
+LAMP = """
+specc: 1
+kind: behavior
+name: lamp
+state:
+  x: {unit: m, domain: [0, 4], role: both, relates: {agent: base, environment: wall}}
+  lamp: {kind: discrete, values: [hidden, shown], role: sensed, relates: {agent: eye, environment: lamp}}
+  doing: {kind: discrete, values: [rest, go], role: both, relates: {agent: base, environment: lamp}}
+constants:
+  calm: {value: 1, unit: 1/s}
+  there: {value: 1, unit: m}
+  beyond: {value: 1.5, unit: m}
+field:
+  modes:
+    of: doing
+    each:
+      rest:
+        formula: {x: -calm * x}
+        leave: [{when: lamp == 'shown', to: go}]
+      go:
+        formula: {x: calm * (there - x)}
+        leave: [{when: lamp == 'hidden', to: rest}, {when: x >= beyond, to: rest}]
+fidelity: {tolerance: {x: 0.05}, horizon: 0.5 s}
+"""
+
+
+def test_of_two_ways_to_a_mode_the_one_that_opened_was_taken(tmp_path: Path) -> None:
+    (tmp_path / "lamp.yaml").write_text(LAMP)
+    times = np.arange(0.0, 40.0, 0.05)
+    shown = (times % 4.0) >= 1.99
+    x = np.zeros(times.size)
+    for k in range(1, times.size):
+        x[k] = (x[k - 1] - shown[k - 1]) * np.exp(-0.05) + shown[k - 1]
+    values = {"x": x, "lamp": shown.astype(float), "doing": shown.astype(float)}
+    series = {name: Series(name, times, each, name, TICKS) for name, each in values.items()}
+
+    found = switching(load_program(tmp_path / "lamp.yaml"), Trace("log", series, {}, 0.0, (), ()))
+
+    assert {each.sort for each in found.switches} == {SwitchSort.EXPECTED}

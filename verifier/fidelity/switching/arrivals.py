@@ -52,7 +52,8 @@ def arrivals_of(setting: Setting, stays: tuple[Stay, ...]) -> Arrivals:
     paths, nudge = fan(setting, before, knots)
     here = np.clip(knot_at(grid, changes.times) - before.first, 0, knots.shape[1] - 1)
     along = guard_paths(setting, paths[0], knots, modes)
-    taken = _taken(setting, along, here)
+    opened = _opened(setting, along)
+    taken = _taken(setting, along, here, opened)
     used = np.maximum(taken, 0)
     opening = opening_of(along, used)
     step = np.where(np.isfinite(opening.times), opening.steps, here)
@@ -66,7 +67,7 @@ def arrivals_of(setting: Setting, stays: tuple[Stay, ...]) -> Arrivals:
     return Arrivals(
         is_good=before.is_good & np.isfinite(value),
         guards=taken,
-        opened=_opened(setting, along),
+        opened=opened,
         value=value,
         room=room_at(setting, at, knots[rows, step])[rows, used],
         doubt=np.sqrt(np.maximum(variance, 0.0)),
@@ -92,16 +93,22 @@ def _leads(setting: Setting, stays: tuple[Stay, ...]) -> Array:
     return leads
 
 
-def _taken(setting: Setting, along: GuardPaths, here: Integers) -> Integers:
-    """The guard between the two modes (K,); of several, the one furthest open at the change."""
+def _taken(setting: Setting, along: GuardPaths, here: Integers, opened: Array) -> Integers:
+    """The guard between the two modes (K,).
+
+    Of several, the one that opens nearest to the change; where none opens, the one furthest open.
+    """
     rows, changes = np.arange(len(here)), setting.changes
     taken = np.full(len(here), -1)
-    best = np.full(len(here), -np.inf)
+    best, least = np.full(len(here), -np.inf), np.full(len(here), np.inf)
     for index, guard in enumerate(setting.guards):
         value = along.before[rows, here, index]
+        apart = np.abs(opened[:, index] - changes.times)
         fits = (changes.left == guard.mode) & (changes.entered == guard.target)
-        better = fits & ((taken < 0) | (value > best))
-        taken, best = np.where(better, index, taken), np.where(better, value, best)
+        nearer = (apart < least) | ((apart == least) & (value > best))
+        better = fits & ((taken < 0) | nearer)
+        taken = np.where(better, index, taken)
+        best, least = np.where(better, value, best), np.where(better, apart, least)
     return taken
 
 
