@@ -9,6 +9,7 @@ channels      how conflicts are resolved                       resolutions, excl
 order         circles without a delay                          graph
 timing        steps and delays against the field               timing
 levels        what controls what                               levels
+signs         what falls as the body moves                     signs
 standing      imitations, what is hypothetical, what is idle   standing
 """
 
@@ -30,6 +31,7 @@ from compiler.architecture.lower import (
 from compiler.architecture.parts import Parts, gather
 from compiler.architecture.resolutions import channels_of
 from compiler.architecture.signals import board_of
+from compiler.architecture.signs import check_signs
 from compiler.architecture.standing import check_standing
 from compiler.architecture.timing import check_timing
 from compiler.architecture.wires import Board, inputs_of
@@ -75,6 +77,7 @@ def compile_parts(
     channels = channels_of(commands, parts, wiring, findings)
     order = order_of(inputs, signals, parts, findings)
     check_timing(inputs, signals, choices, parts, findings)
+    check_signs(inputs, commands, signals, parts, findings)
     if lowered is None or parts.body is None or findings.has_errors:
         return None
     check_standing(inputs, commands, signals, parts, findings)

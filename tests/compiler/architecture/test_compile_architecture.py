@@ -195,9 +195,9 @@ def test_a_wire_is_checked_from_end_to_end(make: Make, wire: str, wrong: set[str
 
 
 def test_an_angle_wraps_where_it_is_wired_to_an_angle(make: Make) -> None:
-    assert not codes(make({"veer": node("veer", "sense: {heading: beacon.bearing}")}))
+    assert not codes(make({"veer": node("veer", "sense: {heading: odom.heading}")}))
     assert not codes(
-        make({"veer": node("veer", "sense: {heading: {from: odom.heading, scale: -1}}")})
+        make({"veer": node("veer", "sense: {heading: {from: beacon.bearing, scale: -1}}")})
     )
 
 
