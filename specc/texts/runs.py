@@ -8,6 +8,7 @@ from specc.texts.scenario_runs import (
     NODE_TITLES,
     REQUIREMENT_TITLES,
     RequirementRow,
+    left_out,
     node_rows,
     nodes_of,
     pools_of_nodes,
@@ -31,16 +32,18 @@ from specc.verifying.trace import Verification
 from verifier.report.examination_text import examination_text
 from verifier.report.layout import bullets, section, table, wide_table, wrapped
 from verifier.report.report import Report, Verdict
-from verifier.report.wording import percent, seconds, shown
+from verifier.report.wording import LEFT_OUT, percent, seconds, shown
 
 BY_ITSELF: Final = (
     "Each recording by itself, and which faults a PASS would have caught: `--format json`, or"
-    " `-o report.html`."
+    " `-o\N{NO-BREAK SPACE}report.html`."
 )
 FAILS: Final = (
     "A node FAILs where it fails in one recording, else it has the verdict on all together."
 )
-CAUGHT: Final = "Which faults a PASS would have caught: `--format json`, or `-o report.html`."
+CAUGHT: Final = (
+    "Which faults a PASS would have caught: `--format json`, or `-o\N{NO-BREAK SPACE}report.html`."
+)
 
 MOST_OPEN: Final = 3
 """So many reasons are told of why a verdict is open."""
@@ -89,6 +92,8 @@ def _scenarios(runs: Runs) -> Iterator[str]:
     nodes = [*node_rows(runs)]
     if nodes:
         yield wide_table([NODE_TITLES, *nodes])
+    if left := left_out(runs):
+        yield bullets(left)
 
 
 def _footer(runs: Runs) -> str:
@@ -155,11 +160,17 @@ def _together(runs: Runs) -> list[tuple[str, list[str]]]:
     return [
         (
             f"{pool.report.trace.source}: {pool.report.verdict.upper()}",
-            [*map(wrapped, pool.report.reasons), bullets(advice_of(pool))],
+            [*map(wrapped, _together_reasons(pool)), bullets(advice_of(pool))],
         )
         for pool in runs.pools
         if not pool.members[0].part or pool.report.verdict is not Verdict.PASS
     ]
+
+
+def _together_reasons(pool: Pool) -> list[str]:
+    """Without the recordings that are left out, which are told below the table of nodes."""
+    is_told = bool(pool.members[0].part)
+    return [each for each in pool.report.reasons if not is_told or LEFT_OUT not in each]
 
 
 def advice_of(pool: Pool) -> tuple[str, ...]:

@@ -18,10 +18,12 @@ from specc.verifying.runs import (
     verifications,
 )
 from specc.verifying.trace import Verification
+from verifier.arbitration.saying import changes_phrase
+from verifier.report.arbitration import Arbitration
 from verifier.report.examination import Examination
 from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.requirement_results import Outcome, RequirementResult
-from verifier.report.wording import quantity, seconds
+from verifier.report.wording import LEFT_OUT, percent, quantity, seconds
 
 NODE_TITLES = ("node", "spec", "verdict", "judged", "what was found")
 REQUIREMENT_TITLES = ("required", "outcome", "what decides")
@@ -106,12 +108,26 @@ def pool_row(pool: Pool) -> tuple[str, ...]:
     return (name, pool.report.spec.name, decided(pool).upper(), judged, found)
 
 
+def left_out(runs: Runs) -> tuple[str, ...]:
+    """Of each node that fewer recordings are judged of than were given: which not, and why."""
+    return tuple(
+        f"{pool.members[0].part}: {_without_part(reason, pool.members[0].part)}"
+        for pool in pools_of_nodes(runs)
+        for reason in pool.report.reasons
+        if LEFT_OUT in reason
+    )
+
+
+def _without_part(reason: str, part: str) -> str:
+    source, said, why = reason.partition(LEFT_OUT)
+    return f"{source.removesuffix(f': {part}')}{said}{why}"
+
+
 def found_in(examination: Examination) -> str:
     """By how much the worst variable departs, or how often it decides as the spec."""
     report = examination.report
     if examination.arbitration is not None:
-        share = examination.arbitration.share
-        return f"{share.agreeing} of {share.decisions} decisions agree"
+        return _agreement(examination.arbitration, report.verdict)
     if not report.variables:
         return "" if report.verdict is Verdict.PASS else "".join(report.reasons[:1])
     worst = min((each.standing for each in report.variables), key=STANDINGS.index)
@@ -119,6 +135,15 @@ def found_in(examination: Examination) -> str:
     if worst is Standing.WITHIN and report.verdict is not Verdict.PASS:
         told.append("what else is open, or fails, is told below")
     return "; ".join(told)
+
+
+def _agreement(of: Arbitration, verdict: Verdict) -> str:
+    """How often it decides as the spec, and whether that is too little to tell."""
+    share = of.share
+    told = f"{share.agreeing} of {share.decisions} decisions agree, over {changes_phrase(of)}"
+    if verdict is Verdict.INCONCLUSIVE and share.decisions and of.required < 1.0:
+        told += f": too few to tell whether {percent(of.required)} do"
+    return told
 
 
 def _departs(report: Report, result: VariableResult) -> str:

@@ -149,6 +149,7 @@ def _section(
     section = Arbitration(
         choices=arbiter.choices,
         share=share,
+        changes=int(np.count_nonzero(np.diff(decisions.chosen[decisions.judged]))),
         required=_required(arbiter),
         confusion=_confusion(expected, decisions, len(arbiter.choices)),
         cells=found,

@@ -6,11 +6,12 @@ from typing import Final
 import numpy as np
 
 from verifier.arbitration.shares import times_longer
-from verifier.report.arbitration import Arbitration, Region, Share, Threshold, ThresholdStanding
+from verifier.report.arbitration import Arbitration, Region, Threshold, ThresholdStanding
 from verifier.report.report import Standing, Verdict
 from verifier.report.wording import exact, listed, number, percent, quantity, seconds, span
 
 CONFIDENCE: Final = 0.95
+MOST_DIGITS: Final = 3
 FEWEST_SHOWN: Final = 0.05
 """Of the decisions that differ: a confusion rarer than this is not told first."""
 
@@ -20,7 +21,7 @@ def reasons_of(section: Arbitration, verdict: Verdict) -> tuple[tuple[str, ...],
     share = section.share
     if not share.decisions:
         return ("no decision in the log can be judged",), ("see what was not judged, and why",)
-    told = f"it decides as the spec in {_of(share)}; {percent(section.required)} is required"
+    told = f"it decides as the spec in {_of(section)}; {percent(section.required)} is required"
     match verdict:
         case Verdict.PASS:
             return (told,), ()
@@ -75,10 +76,31 @@ def region_phrase(region: Region) -> str:
     return listed(list(region.conditions))
 
 
-def _of(share: Share) -> str:
-    ends = f"{_percents(share.interval.low)} to {_percents(share.interval.high)}"
+def _of(section: Arbitration) -> str:
+    share, required = section.share, section.required
+    ends = f"{_beside(share.interval.low, required)} to {_beside(share.interval.high, required)}"
     decisions = "1 decision" if share.decisions == 1 else f"{share.decisions} decisions"
-    return f"{_percents(share.value)} of {decisions} (95 % interval {ends})"
+    over = f"over {changes_phrase(section)}"
+    return f"{_percents(share.value)} of {decisions}, {over} (95 % interval {ends})"
+
+
+def changes_phrase(section: Arbitration) -> str:
+    """`14 changes of choice`: as many decisions that go on tell much less."""
+    count = section.changes
+    if not count:
+        return "no change of choice"
+    return "1 change of choice" if count == 1 else f"{count} changes of choice"
+
+
+def _beside(share: float, required: float) -> str:
+    """With as many digits as tell it from what is required."""
+    digits = MOST_DIGITS if share != required else 0
+    told = _percents(share)
+    for more in range(1, digits + 1):
+        if float(told.split()[0]) != round(100.0 * required, MOST_DIGITS):
+            break
+        told = f"{100.0 * share:.{more}f} %"
+    return told
 
 
 def _percents(share: float) -> str:

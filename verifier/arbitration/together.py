@@ -16,7 +16,7 @@ from verifier.arbitration.shares import interval_of
 from verifier.report.arbitration import Arbitration, Share, Threshold, ThresholdStanding
 from verifier.report.examination import Examination
 from verifier.report.report import Interval, Report, TraceIdentity
-from verifier.report.wording import exact, listed
+from verifier.report.wording import LEFT_OUT, exact, listed
 
 
 def pooled_decisions(every: Sequence[Examination]) -> Examination:
@@ -33,6 +33,7 @@ def pooled_decisions(every: Sequence[Examination]) -> Examination:
     section = replace(
         first,
         share=share,
+        changes=sum(each.changes for each in sections),
         confusion=np.sum([each.confusion for each in sections], axis=0),
         cells=(),
         boxes=(),
@@ -67,7 +68,7 @@ def _distinct(every: Sequence[Examination]) -> tuple[list[Examination], list[str
     for each in every:
         trace = each.report.trace
         if kept.setdefault(trace.content or trace.source, each) is not each:
-            left.append(f"{trace.source} is left out: it is there twice")
+            left.append(f"{trace.source}{LEFT_OUT}it is there twice")
     return list(kept.values()), left
 
 

@@ -17,6 +17,7 @@ from verifier.fidelity.recording import Recording
 from verifier.fidelity.switching.together import with_every_switching
 from verifier.fidelity.verify import Judgement, judgement_of, report_on
 from verifier.report.report import Report, TraceIdentity, Verdict
+from verifier.report.wording import LEFT_OUT
 from verifier.traces.trace import Trace
 
 
@@ -45,7 +46,7 @@ def pooled(program: Program, judgements: Sequence[Judgement]) -> Report:
     for each in judgements:
         why = _left_out(each, kept)
         if why or each.recording is None:
-            left.append(f"{each.report.trace.source} is left out: {why}")
+            left.append(f"{each.report.trace.source}{LEFT_OUT}{why}")
         else:
             kept.append(each.recording)
             switchings.append((each.report.trace.source, each.switching))

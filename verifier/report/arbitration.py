@@ -102,6 +102,7 @@ class Stray:
 class Arbitration:
     """What the decisions in a log say of an arbiter.
 
+    changes: how often the robot's choice is another than just before, among what is judged.
     confusion: (k, k) decisions by the robot's choice (row) and the spec's (column). cells: of the
     thresholds' own partition of what is read. boxes: of a k-d grid over it. delay: samples by which
     the robot decides later than the spec (earlier: below 0), as far as that explains decisions.
@@ -110,6 +111,7 @@ class Arbitration:
 
     choices: tuple[str, ...]
     share: Share
+    changes: int
     required: float
     confusion: Integers
     cells: tuple[Region, ...]

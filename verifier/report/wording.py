@@ -10,6 +10,8 @@ from runtime.program import Unit
 YEAR: Final = 365.25 * 86400.0
 CENTURIES: Final = 200.0 * YEAR
 """Later than so many seconds after 1970 no robot was recorded."""
+LEFT_OUT: Final = " is left out: "
+"""Between a recording that is not judged with the others, and why."""
 MILLIMETRE: Final = Unit("mm", 1e-3)
 
 

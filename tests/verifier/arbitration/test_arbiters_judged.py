@@ -2,6 +2,8 @@
 
 import csv
 import json
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +23,10 @@ from verifier.arbitration.choosing import rule_chooser
 from verifier.arbitration.comparisons import infix, opened
 from verifier.arbitration.decisions import Decisions
 from verifier.arbitration.refitting import roundest
+from verifier.arbitration.saying import reasons_of
 from verifier.arbitration.shares import share_of, slowness_of
 from verifier.report.arbitration import Arbitration, ThresholdStanding
-from verifier.report.report import Verdict
+from verifier.report.report import Interval, Verdict
 
 ROOT = Path(__file__).parents[3]
 SPEC = ROOT / "specs/arbiters/keep_left_arbiter.yaml"
@@ -48,6 +51,18 @@ def test_three_thresholds_explain_every_decision_of_a_physical_robot() -> None:
 
     assert found.report.verdict is Verdict.PASS
     assert section(found).share.agreeing == section(found).share.decisions == 5456
+    actions = [row["action"] for row in csv.DictReader(LOG.read_text().splitlines())]
+    assert section(found).changes == sum(a != b for a, b in pairwise(actions))
+    assert f"over {section(found).changes} changes of choice" in found.report.reasons[0]
+
+
+def test_an_interval_that_ends_just_below_what_is_required_does_not_read_as_met() -> None:
+    made = section(specc.verify(LOG, SPEC))
+    just = replace(made.share, interval=Interval(0.97998, 1.0))
+
+    (told,), _ = reasons_of(replace(made, share=just, changes=1), Verdict.INCONCLUSIVE)
+
+    assert "over 1 change of choice (95 % interval 97.998 % to 100 %); 98 % is required" in told
 
 
 def test_the_spec_of_the_robot_agrees_row_by_row_as_counted_apart() -> None:
