@@ -68,9 +68,14 @@ def _plain(runs: Runs, anchors: dict[int, str]) -> Iterator[RunsTable]:
 def top_reasons(runs: Runs) -> tuple[str, ...]:
     """Why the verdict is what it is: each recording that did not pass, and what all together say.
 
-    What decides comes first.
+    What decides comes first. Where not all pass, those that do are told in the tables.
     """
-    together = [f"{_told(pool)}: {reason}" for pool in runs.pools for reason in pool.report.reasons]
+    together = [
+        f"{_told(pool)}: {reason}"
+        for pool in runs.pools
+        if runs.verdict is Verdict.PASS or pool.report.verdict is not Verdict.PASS
+        for reason in pool.report.reasons
+    ]
     own = reasons_of(runs)
     is_by_one = runs.verdict is None or runs.verdict is Verdict.FAIL
     return ((*own, *together) if is_by_one else (*together, *own))[:MOST]

@@ -5,9 +5,11 @@ from typing import Final
 
 from specc.pages.page import RunRow, RunsTable
 from specc.pages.report_page import SIGNS
+from specc.texts.runs import FAILS
 from specc.texts.scenario_runs import (
     NODE_TITLES,
     RequirementRow,
+    left_out,
     node_row,
     nodes_of,
     pool_row,
@@ -45,11 +47,16 @@ def scenario_tables(runs: Runs, anchors: dict[int, str]) -> Iterator[RunsTable]:
     if required:
         columns = ("what decides",) if is_one else ("in", "what decides")
         yield RunsTable("Requirements", "required", columns, tuple(required), REQUIRED, words=True)
-    nodes = [_pool(pool, anchors[id(pool)]) for pool in pools_of_nodes(runs)]
-    nodes += [_node(each, anchors, is_one=is_one) for each in nodes_of(runs.outcomes)]
+    titles = (NODE_TITLES[1], *NODE_TITLES[3:])
+    pools = tuple(_pool(pool, anchors[id(pool)]) for pool in pools_of_nodes(runs))
+    if pools:
+        how = ". ".join((f"{NODES} {FAILS[:-1]}", *left_out(runs)))
+        title = "Nodes, of all recordings together"
+        yield RunsTable(title, "node", titles, pools, how, words=True)
+    nodes = tuple(_node(each, anchors, is_one=is_one) for each in nodes_of(runs.outcomes))
     if nodes:
-        titles = (NODE_TITLES[1], *NODE_TITLES[3:])
-        yield RunsTable("Nodes", "node", titles, tuple(nodes), NODES, words=True)
+        title, how = ("Nodes, of each recording by itself", "") if pools else ("Nodes", NODES)
+        yield RunsTable(title, "node", titles, nodes, how, words=True)
 
 
 def _required(runs: Runs, anchors: dict[int, str]) -> Iterator[RunRow]:

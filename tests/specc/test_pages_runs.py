@@ -9,7 +9,7 @@ from runtime.program import Program
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 from specc.pages.prose import prose
-from specc.pages.runs_page import top_advice, top_reasons
+from specc.pages.runs_page import gathered_runs, top_advice, top_reasons
 from specc.texts.runs import runs_table
 from specc.verifying.runs import Pool, Runs, Unusable
 from specc.verifying.spec_finding import Found
@@ -82,6 +82,29 @@ def test_the_page_tells_of_whom_each_reason_is(runs: Runs) -> None:
     assert reasons[0].startswith("bad.mcap, FAIL: ")
     assert reasons[1].startswith("torn.mcap can't be used: ")
     assert all(r.startswith("2 recordings together, INCONCLUSIVE: ") for r in reasons[2:])
+
+
+def test_what_passes_together_stands_not_among_the_reasons_of_a_failure(runs: Runs) -> None:
+    good = verification(passed(), "2 recordings together").examination
+    pools = (replace(runs.pools[0], examination=good),)
+
+    assert not any("PASS" in each for each in top_reasons(replace(runs, pools=pools)))
+    assert any("PASS" in each for each in top_reasons(Runs(runs.outcomes[:1], pools)))
+
+
+def test_who_is_left_out_of_a_node_that_passes_is_told_below_the_nodes() -> None:
+    left = "a.mcap: r.seek is left out: it never had its way"
+    both = tuple(
+        replace(verification(passed(), f"{name}.mcap: r.seek"), part="r.seek") for name in "ab"
+    )
+    of_one = verification(passed(), "1 recording: r.seek").examination
+    report = replace(of_one.report, reasons=(*of_one.report.reasons, left))
+    made = Runs(both, (Pool(both, replace(of_one, report=report)),))
+
+    assert "- r.seek: a.mcap is left out: it never had its way" in runs_table(made)
+    titles = [table.title for table in gathered_runs(made).tables]
+    assert titles == ["Nodes, of all recordings together", "Nodes, of each recording by itself"]
+    assert "a.mcap is left out" in gathered_runs(made).tables[0].how
 
 
 # --- what to do next
