@@ -288,6 +288,16 @@ def test_init_writes_a_spec_that_checks(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["init", "rhythm"]) == 2, "a file that exists is not overwritten"
 
 
+def test_the_templates_are_listed_under_either_name(capsys: pytest.CaptureFixture[str]) -> None:
+    listed = []
+    for option in ("--list", "--templates"):
+        assert main(["init", option]) == 0
+        listed.append(capsys.readouterr().out)
+
+    assert listed[0] == listed[1]
+    assert "wall_follow" in listed[0]
+
+
 def test_init_brings_the_module_that_a_template_calls() -> None:
     assert main(["init", "orbit", "--template", "circling"]) == 0
     assert main(["compile", "orbit.yaml"]) == 0

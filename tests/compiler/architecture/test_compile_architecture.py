@@ -219,8 +219,7 @@ def remedies(path: Path, code: str) -> list[str]:
 @pytest.mark.parametrize(
     ("written", "remedy"),
     [
-        ("exclusive", "write {exclusive: [seek, avoid]} with your nodes, or {exclusive: choose} "
-         "with your arbiter"),
+        ("priority", "write {priority: [avoid, seek]} with your nodes"),
         ("blend", "write {blend: choose} with your arbiter"),
         ("sum [avoid, seek]", "write {sum: [avoid, seek]}"),
         ("pick", "write {exclusive: pick}"),
@@ -232,6 +231,13 @@ def test_a_way_without_braces_is_answered_by_one_that_can_be_written(
     path = make({"avoid": node("avoid", AVOID)}, f"{{base.turn: '{written}'}}")
 
     assert remedies(path, "S103") == [remedy]
+
+
+def test_exclusive_alone_is_answered_by_nodes_and_by_an_arbiter(make: Make) -> None:
+    [remedy] = remedies(make({"avoid": node("avoid", AVOID)}, "{base.turn: exclusive}"), "S103")
+
+    assert "{exclusive: [seek, avoid]}" in remedy
+    assert "{exclusive: choose}" in remedy
 
 
 def test_a_time_that_is_proposed_shares_a_long_step_with_others(make: Make) -> None:
