@@ -4,8 +4,9 @@ Latches go on from decision to decision: whole arrays at a time where a rule has
 duration, else episode by episode.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TypeAlias, final
 
 import numpy as np
@@ -56,9 +57,14 @@ class RuleChooser:
         return RuleChooser(self.opened, self.register, {**self.values, entry: value})
 
 
-def rule_chooser(arbiter: Arbiter, opened: Opened) -> RuleChooser:
-    """The spec's own rules, with their thresholds at the values that it gives them."""
-    defaults = {c.name: c.default for c in arbiter.controls}
+def rule_chooser(
+    arbiter: Arbiter, opened: Opened, set_to: Mapping[str, float] = MappingProxyType({})
+) -> RuleChooser:
+    """The spec's own rules, with their thresholds at the values that it gives them.
+
+    set_to: of controls that were set to something else all the while.
+    """
+    defaults = {c.name: c.default for c in arbiter.controls} | dict(set_to)
     defaults |= {c.name: c.value for c in arbiter.constants}
     point = np.array([defaults.get(name, 0.0) for name in arbiter.register])
     values = {

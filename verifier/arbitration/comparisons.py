@@ -4,7 +4,7 @@ A condition is postfix code. Each comparison one side of which reads nothing is 
 side is taken out, and put in again as an entry of the register whose value may be moved.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, final
 
@@ -51,9 +51,12 @@ class Opened:
         return tuple(dict.fromkeys(each.entry for each in self.comparisons))
 
 
-def opened(arbiter: Arbiter) -> Opened:
-    """The arbiter's rules with their thresholds taken out."""
-    reads = frozenset(read.name for read in arbiter.reads)
+def opened(arbiter: Arbiter, moving: Collection[str] = ()) -> Opened:
+    """The arbiter's rules with their thresholds taken out.
+
+    moving: the controls that others set meanwhile; what depends on them is no threshold.
+    """
+    reads = frozenset((*(read.name for read in arbiter.reads), *moving))
     entries: dict[str, str] = {}
     found: list[Comparison] = []
     rules = []

@@ -64,7 +64,7 @@ def judge_arbiter(
         SpecError: the choice, or something that is read, is not in the log (V310).
     """
     decisions = decisions_of(arbiter, trace)
-    rules = _rules(arbiter)
+    rules = _rules(arbiter, decisions)
     required = _required(arbiter)
     chooser: Chooser
     if rules is not None:
@@ -172,10 +172,18 @@ def _required(arbiter: Arbiter) -> float:
     return AGREED if arbiter.agreement is None else arbiter.agreement.share
 
 
-def _rules(arbiter: Arbiter) -> RuleChooser | None:
-    if arbiter.paradigm in {Paradigm.RULES, Paradigm.SUBSUMPTION}:
-        return rule_chooser(arbiter, opened(arbiter))
-    return None
+def _rules(arbiter: Arbiter, decisions: Decisions) -> RuleChooser | None:
+    """The rules, with controls as they were set meanwhile."""
+    if arbiter.paradigm not in {Paradigm.RULES, Paradigm.SUBSUMPTION}:
+        return None
+    columns = {
+        each.name: decisions.register[:, arbiter.register.index(each.name)]
+        for each in arbiter.controls
+    }
+    values = {name: np.unique(each[np.isfinite(each)]) for name, each in columns.items()}
+    moving = {name for name, each in values.items() if each.size > 1}
+    set_to = {name: float(each[0]) for name, each in values.items() if each.size == 1}
+    return rule_chooser(arbiter, opened(arbiter, moving), set_to)
 
 
 def _confusion(expected: Integers, decisions: Decisions, count: int) -> Integers:

@@ -22,11 +22,14 @@ from specc.verifying.trace import Verification
 from verifier.arbitration.choosing import rule_chooser
 from verifier.arbitration.comparisons import infix, opened
 from verifier.arbitration.decisions import Decisions
+from verifier.arbitration.judging import judge_arbiter
+from verifier.arbitration.reader import CHOICE
 from verifier.arbitration.refitting import roundest
 from verifier.arbitration.saying import reasons_of
 from verifier.arbitration.shares import share_of, slowness_of
 from verifier.report.arbitration import Arbitration, ThresholdStanding
 from verifier.report.report import Interval, Verdict
+from verifier.traces.trace import TICKS, Series, Trace
 
 ROOT = Path(__file__).parents[3]
 SPEC = ROOT / "specs/arbiters/keep_left_arbiter.yaml"
@@ -302,3 +305,30 @@ def test_slowness_is_that_of_an_autoregressive_course() -> None:
 @given(st.floats(-5, 5), st.floats(1e-3, 2))
 def test_a_round_number_lies_within(low: float, width: float) -> None:
     assert low < roundest((low, low + width), 1.0, low + 0.5 * width) < low + width
+
+
+@pytest.mark.parametrize("moves", [False, True])
+def test_an_arbiter_whose_threshold_is_set_by_another_is_judged_by_what_was_set(
+    *, moves: bool
+) -> None:
+    arbiter = compile_arbiter(ROOT / "specs/arbiters/who_moves.yaml").arbiter
+    chance = np.random.default_rng(1)
+    times = np.arange(0.0, 200.0, 0.1)
+    ahead = np.abs(np.cumsum(0.05 * chance.standard_normal(times.size))) % 1.0
+    near = np.where(moves & (times % 20.0 > 10.0), 0.45, 0.3)
+    wide = np.full(times.size, 2.0)
+    rules = Rules(arbiter)
+    rows = np.column_stack([ahead, wide, wide, near])
+    chosen = [
+        int(np.argmax(rules.decide(row, time))) for row, time in zip(rows, times, strict=True)
+    ]
+    columns = {"ahead": ahead, "left": wide, "right": wide, "near": near, CHOICE: chosen}
+    series = {
+        name: Series(name, times, np.asarray(each, float), name, TICKS)
+        for name, each in columns.items()
+    }
+
+    found = judge_arbiter(arbiter, Trace("log", series, {}, 0.0, (), ())).section.share
+
+    assert 0 < sum(chosen) < times.size
+    assert found.agreeing == found.decisions == times.size

@@ -442,8 +442,10 @@ kind: behavior
 name: lamp
 state:
   x: {unit: m, domain: [0, 4], role: both, relates: {agent: base, environment: wall}}
-  lamp: {kind: discrete, values: [hidden, shown], role: sensed, relates: {agent: eye, environment: lamp}}
-  doing: {kind: discrete, values: [rest, go], role: both, relates: {agent: base, environment: lamp}}
+  lamp:
+    {kind: discrete, values: [hidden, shown], role: sensed, relates: {agent: eye, environment: lamp}}
+  doing:
+    {kind: discrete, values: [rest, go], role: both, relates: {agent: base, environment: lamp}}
 constants:
   calm: {value: 1, unit: 1/s}
   there: {value: 1, unit: m}
