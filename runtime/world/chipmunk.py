@@ -67,6 +67,11 @@ def feel_evenly(body: pymunk.Body) -> None:
     C.cpBodySetVelocityUpdateFunc(body._body, _feeling())  # noqa: SLF001 (see above)
 
 
+@final
+class OtherPhysicsError(RuntimeError):
+    """A pymunk, or a machine, with which worlds can't be run."""
+
+
 @cache
 def _feeling() -> Any:
     """The compiled function, for C."""
@@ -79,12 +84,12 @@ def make_sure() -> None:
     """See that the physics keeps in memory what kernels look for where they look for it.
 
     Raises:
-        RuntimeError: it does not.
+        OtherPhysicsError: it does not.
     """
     if not _is_laid_out_as_known():
-        raise RuntimeError(
+        raise OtherPhysicsError(
             f"pymunk {pymunk.version} keeps bodies and joints in memory otherwise than the physics "
-            "of worlds relies on; install pymunk 7.3.1"
+            "of worlds relies on"
         )
 
 

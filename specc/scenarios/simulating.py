@@ -11,6 +11,7 @@ from runtime.run_size import MOST, bytes_of, gigabytes
 from runtime.scenario import Scenario
 from runtime.scheduler.observer import Observer
 from runtime.user_code import UserCodeError
+from runtime.world.chipmunk import OtherPhysicsError
 from runtime.world.layout import NoRoomError
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
@@ -88,6 +89,9 @@ def simulate_scenario(
         )
     except NoRoomError as error:
         raise _no_room(scenario, error) from error
+    except OtherPhysicsError as error:
+        remedy = "install pymunk 7.3.1, on a machine of 64 bits"
+        raise fault("V384", scenario.source.file, str(error), remedy) from error
     except UserCodeError as error:
         remedy = "" if allow_code else "read that code, then run it with --allow-code"
         raise fault("V382", scenario.source.file, str(error), remedy) from error

@@ -9,6 +9,8 @@ import pytest
 import specc
 from runtime.recording.scenario_run import recorded_run
 from runtime.run import run
+from runtime.world import chipmunk
+from runtime.world.chipmunk import OtherPhysicsError
 from spec_schema.diagnostics import SpecError
 from specc.cli import main
 from specc.scenarios.simulating import required_of, simulate_scenario
@@ -95,6 +97,19 @@ def test_what_does_not_fit_is_refused_before_anything_runs(
     assert "V345" in told
     assert "for a behavior alone" in told
     assert "V342" in told
+
+
+def test_a_physics_that_is_not_known_is_told(
+    scenario: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def otherwise() -> None:
+        raise OtherPhysicsError("pymunk 7.9.0 keeps bodies in memory otherwise")
+
+    monkeypatch.setattr(chipmunk, "make_sure", otherwise)
+    with pytest.raises(SpecError) as caught:
+        simulate_scenario(scenario)
+
+    assert [each.code for each in caught.value.diagnostics] == ["V384"]
 
 
 def test_no_room_is_told_with_its_place(scenario: Path, tmp_path: Path) -> None:
