@@ -443,7 +443,7 @@ name: lamp
 state:
   x: {unit: m, domain: [0, 4], role: both, relates: {agent: base, environment: wall}}
   lamp:
-    {kind: discrete, values: [hidden, shown], role: sensed, relates: {agent: eye, environment: lamp}}
+    {kind: discrete, values: [hidden, shown], role: sensed, relates: {agent: eye, environment: it}}
   doing:
     {kind: discrete, values: [rest, go], role: both, relates: {agent: base, environment: lamp}}
 constants:

@@ -74,14 +74,18 @@ def told(sentence: str, run: dict[str, Signal]) -> RequirementResult:
         (
             "eventually within 7 s r.clearance > 80 cm",
             Outcome.VIOLATED,
-            "violated by 30 cm: r.clearance > 80 cm never came "
-            "(nearest at 0 s, where r.clearance is 50 cm)",
+            (
+                "violated by 30 cm: r.clearance > 80 cm never came "
+                "(nearest at 0 s, where r.clearance is 50 cm)"
+            ),
         ),
         (
             "(eventually from 6 s to 8.5 s (r.clearance < 5 cm))",
             Outcome.VIOLATED,
-            "violated by 1 cm: r.clearance < 5 cm never came "
-            "(nearest at 8 s, where r.clearance is 6 cm)",
+            (
+                "violated by 1 cm: r.clearance < 5 cm never came "
+                "(nearest at 8 s, where r.clearance is 6 cm)"
+            ),
         ),
         ("eventually within 60 s r.clearance > 1 m", Outcome.OPEN, "windows reach 60 s ahead"),
     ],
