@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TypeAlias, final
 
 from compiler.assemble import assembled
-from compiler.check import Checked, check_behavior, check_examined
+from compiler.check_behavior import Checked, check_behavior
 from compiler.horizon import excess
 from compiler.lower_field import Progress, lower_field, measured
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
@@ -36,11 +36,11 @@ from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Form, Formula, Module, Step
 from spec_schema.field_modes import Modes
-from spec_schema.load import Loaded, examine
+from spec_schema.load import Loaded
 from spec_schema.places import Path as KeyPath
 from spec_schema.wording import with_article
 
-__all__ = ["Compiled", "Judge", "Progress", "compile_file", "compile_loaded"]
+__all__ = ["Compiled", "Judge", "Progress", "compile_loaded"]
 
 Judge: TypeAlias = Callable[[Program], tuple[str, ...]]
 
@@ -66,27 +66,13 @@ class Compiled:
     notes: tuple[str, ...] = ()
 
 
-def compile_file(
-    path: Path, progress: Progress, judge: Judge | None = None, *, allow_code: bool = False
-) -> Compiled:
-    """Compile the behavior spec at `path`.
-
-    judge: says what a compiled sketch lacks of its claims, or has beside them, in sentences.
-    allow_code: whether the Python of a `module` field may be run.
-
-    Raises:
-        SpecError: with everything that is wrong with it.
-    """
-    examined = examine(path)
-    if examined.mistakes or examined.loaded is None:
-        raise SpecError(check_examined(examined))
-    return compile_loaded(examined.loaded, progress, judge, allow_code=allow_code)
-
-
 def compile_loaded(
     loaded: Loaded, progress: Progress, judge: Judge | None = None, *, allow_code: bool = False
 ) -> Compiled:
-    """Compile a behavior spec that has been read; see `compile_file`.
+    """Compile a behavior spec that has been read.
+
+    judge: says what a compiled sketch lacks of its claims, or has beside them, in sentences.
+    allow_code: whether the Python of a `module` field may be run.
 
     Raises:
         SpecError: with everything that is wrong with it, or its code may not be run (V336).

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Final
 
 from compiler.architecture.compile import CompiledArchitecture, compile_architecture
-from compiler.compile import Compiled, compile_file
+from compiler.compile import Compiled
+from compiler.compile_file import compile_file
 from compiler.lower_field import Progress
 from compiler.world.scenario import CompiledScenario, compile_scenario
 from runtime import architecture_artifact, scenario_artifact

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from compiler.check import check
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from spec_schema.diagnostics import Severity, render
 from spec_schema.expressions.tree import FUNCTIONS
 from spec_schema.json_schema import json_schema

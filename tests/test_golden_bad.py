@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from compiler.check import check
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError, render
 from spec_schema.load import load

@@ -26,7 +26,7 @@ def compile_architecture(
 ) -> CompiledArchitecture:
     """Compile the architecture spec at `path`, and everything that it names, each file once.
 
-    judge, allow_code: as of `compile_file`, for the behaviors.
+    judge, allow_code: as of `compile_loaded`, for the behaviors.
 
     Raises:
         SpecError: with everything that is wrong with it, and with what it names.

@@ -25,7 +25,7 @@ def compile_scenario(
 ) -> CompiledScenario:
     """Compile the scenario at `path` and everything that it names, each file once.
 
-    seed: in the place of the one in the file. judge, allow_code: as of `compile_file`.
+    seed: in the place of the one in the file. judge, allow_code: as of `compile_loaded`.
 
     Raises:
         SpecError: with everything that is wrong with it, and with what it names.

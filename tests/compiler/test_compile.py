@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from compiler.compile import Compiled, compile_file
+from compiler.compile import Compiled
+from compiler.compile_file import compile_file
 from compiler.dump import dump
 from runtime.flow import Source, flow_of, next_states, rates
 from runtime.program import Kind, Program

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from compiler.check import check
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from spec_schema.diagnostics import SpecError
 
 SPEC = """specc: 1

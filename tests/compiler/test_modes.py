@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from compiler.check import check
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from compiler.guard_sign import signed
 from runtime.flow import Source, flow_of, rates
 from runtime.machine import evaluate as run

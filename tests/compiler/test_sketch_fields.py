@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiler.check import check, check_behavior
-from compiler.compile import compile_file, compile_loaded
+from compiler.compile import compile_loaded
+from compiler.compile_file import compile_file
 from compiler.sketch.graphs import graph_through
 from compiler.sketch.index import Ground, Item, completed, index_of
 from compiler.sketch.pacing import timed_paces

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from runtime.arrays import Array
 from runtime.program import Program
 from tests.verifier.hybrid_scenes import (

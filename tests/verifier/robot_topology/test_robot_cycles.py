@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from runtime.claim import Claim, Reach
 from runtime.code import Code
 from runtime.program import Fidelity

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from compiler.compile import compile_file
+from compiler.compile_file import compile_file
 from spec_schema.diagnostics import SpecError
 from verifier.traces.read import read_trace
 
