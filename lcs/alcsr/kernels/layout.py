@@ -1,0 +1,117 @@
+"""What the kernels work on: arrays of all landscapes, and the constants.
+
+A: actions, one landscape each; C: room for rules; M: room for corpses; n: inputs.
+Rules of landscape a stand in [a, :count[a]]; where one is removed the last takes its place.
+"""
+
+from typing import NamedTuple
+
+from lcs.arrays import Array, Booleans, Integers
+
+
+class Rules(NamedTuple):
+    """All rules. (A, C, n): lower, upper, right_center, wrong_center; count (A,); else (A, C)."""
+
+    count: Integers
+    lower: Array
+    upper: Array
+    prediction: Array
+    strength: Array
+    experience: Integers
+    volume: Array
+    right: Integers
+    wrong: Integers
+    right_center: Array
+    wrong_center: Array
+    damaged: Booleans
+    was_able: Booleans
+
+
+class Corpses(NamedTuple):
+    """The mausoleums. (A, M, n): center and cover fractions; count (A,); prediction (A, M)."""
+
+    count: Integers
+    center: Array
+    prediction: Array
+    lower: Array
+    upper: Array
+
+
+class Land(NamedTuple):
+    """The known range of inputs, low and high (n,)."""
+
+    low: Array
+    high: Array
+
+
+class Numbers(NamedTuple):
+    """`Config` and `Readings`, and the range of rewards, for kernels."""
+
+    explore: float
+    immature_vote: float
+    error_cost: float
+    metabolism_cost: float
+    damaged_error: float
+    mature_level: float
+    breed_level: float
+    breeding_neighbors: int
+    breeding_share: float
+    generalize: float
+    mutate: float
+    mutation: float
+    transfer: float
+    seeding: float
+    corpses: int
+    corpse_neighbors: int
+    corpse_rate: float
+    sprout_width: float
+    learning_rate: float
+    reward_range: float
+    error_of: int
+    prediction_is: int
+    damaged_by: int
+    starved_at: int
+    order: int
+    covered_is: int
+    vote_of_none: int
+    seeds_are: int
+    neighbors_are: int
+    half_of: int
+    offspring_in: int
+    generalization: int
+    mutation_is: int
+    first_aggressor: int
+    range_is: int
+    corpse_spans: int
+    corpses_learn: int
+    corpse_rate_is: int
+    seeding_by: int
+
+
+class Scratch(NamedTuple):
+    """Room to work in, and where a cycle stands that had to stop for more room.
+
+    fed (A, C), fed_count (A,): the potential action sets. order (C,), dead (C,): in fights and
+    deaths. pool (C,): of breeding; able (C,): those fit for it. near, distance (K,): neighbors.
+    votes (A,). fractions (2, n): of covering. child (2, n): an offspring's bounds.
+    progress: `STAGE`, `SEED`, `POOL`, `ACTION`.
+    tally: `BORN_BY_COVERING`, `BORN_BY_BREEDING`, `DIED_POISONED`, `DIED_STARVED`, `DIED_EATEN`.
+    """
+
+    fed: Integers
+    fed_count: Integers
+    order: Integers
+    dead: Booleans
+    pool: Integers
+    able: Integers
+    near: Integers
+    distance: Array
+    votes: Array
+    fractions: Array
+    child: Array
+    progress: Integers
+    tally: Integers
+
+
+STAGE, SEED, POOL, ACTION = range(4)
+COVERED, BRED, POISONED, STARVED, EATEN = range(5)

@@ -1,0 +1,116 @@
+"""The rules and corpses of one learner, and the room for them, which grows as need be."""
+
+from dataclasses import asdict, dataclass
+from typing import Any, Final, final
+
+import numpy as np
+
+from lcs.alcsr.config import Config
+from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
+from lcs.arrays import Array
+
+ROOM: Final = 1024
+"""For rules and for corpses of each action, at first."""
+EMPTY_RANGE: Final = np.inf
+
+
+@final
+@dataclass(slots=True)
+class Population:
+    """All that a learner knows; arrays are changed in place by kernels, and replaced to grow."""
+
+    rules: Rules
+    corpses: Corpses
+    land: Land
+    scratch: Scratch
+    numbers: Numbers
+
+    def make_room(self) -> None:
+        """Twice the room where it is short."""
+        if self.rules.count.max() + 1 >= self.rules.prediction.shape[1]:
+            self.rules = Rules(self.rules.count, *(_longer(each) for each in self.rules[1:]))
+        needed = (self.corpses.count + self.scratch.fed_count).max()
+        if needed >= self.corpses.prediction.shape[1]:
+            self.corpses = Corpses(
+                self.corpses.count, *(_longer(each) for each in self.corpses[1:])
+            )
+        self.scratch = _wider(self.scratch, self.rules.prediction.shape[1])
+
+
+def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Population:
+    """Landscapes that nobody lives on, of which nothing is known."""
+    a, n = actions, inputs
+    rules = Rules(
+        count=np.zeros(a, np.int64),
+        lower=np.zeros((a, ROOM, n)),
+        upper=np.zeros((a, ROOM, n)),
+        prediction=np.zeros((a, ROOM)),
+        strength=np.zeros((a, ROOM)),
+        experience=np.zeros((a, ROOM), np.int64),
+        volume=np.zeros((a, ROOM)),
+        right=np.zeros((a, ROOM), np.int64),
+        wrong=np.zeros((a, ROOM), np.int64),
+        right_center=np.zeros((a, ROOM, n)),
+        wrong_center=np.zeros((a, ROOM, n)),
+        damaged=np.zeros((a, ROOM), np.bool_),
+        was_able=np.zeros((a, ROOM), np.bool_),
+    )
+    corpses = Corpses(
+        count=np.zeros(a, np.int64),
+        center=np.zeros((a, ROOM, n)),
+        prediction=np.zeros((a, ROOM)),
+        lower=np.zeros((a, ROOM, n)),
+        upper=np.zeros((a, ROOM, n)),
+    )
+    land = Land(np.full(n, np.inf), np.full(n, -np.inf))
+    neighbors = 1 + max(config.breeding_neighbors, config.corpse_neighbors)
+    scratch = Scratch(
+        fed=np.zeros((a, ROOM), np.int64),
+        fed_count=np.zeros(a, np.int64),
+        order=np.zeros(ROOM, np.int64),
+        dead=np.zeros(ROOM, np.bool_),
+        pool=np.zeros(ROOM, np.int64),
+        able=np.zeros(ROOM, np.int64),
+        near=np.zeros(neighbors, np.int64),
+        distance=np.zeros(neighbors),
+        votes=np.zeros(a),
+        fractions=np.zeros((2, n)),
+        child=np.zeros((2, n)),
+        progress=np.array([-1, 0, 0, 0]),
+        tally=np.zeros(5, np.int64),
+    )
+    return Population(rules, corpses, land, scratch, numbers_of(config, reward_range))
+
+
+def numbers_of(config: Config, reward_range: float) -> Numbers:
+    """The constants for kernels."""
+    values = asdict(config)
+    readings = values.pop("readings")
+    readings["corpse_rate_is"] = readings.pop("corpse_rate")
+    return Numbers(
+        **values,
+        reward_range=reward_range,
+        **{name: int(value) for name, value in readings.items()},
+    )
+
+
+def _longer(values: Any) -> Any:
+    grown = np.zeros((values.shape[0], 2 * values.shape[1], *values.shape[2:]), values.dtype)
+    grown[:, : values.shape[1]] = values
+    return grown
+
+
+def _wider(scratch: Scratch, room: int) -> Scratch:
+    if scratch.order.size >= room:
+        return scratch
+    more = room - scratch.order.size
+    wide = {
+        name: np.pad(getattr(scratch, name), (0, more)) for name in ("order", "dead", "pool", "able")
+    }
+    return scratch._replace(fed=np.pad(scratch.fed, ((0, 0), (0, more))), **wide)
+
+
+def bounds_of(population: Population, action: int) -> tuple[Array, Array]:
+    """The bodies (rules, n) on one landscape."""
+    count = population.rules.count[action]
+    return population.rules.lower[action, :count], population.rules.upper[action, :count]
