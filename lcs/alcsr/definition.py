@@ -326,9 +326,7 @@ def neighbors(world: World, land: Landscape, seed: Organism) -> list[Organism]:
     """The k_b nearest by their centres; of those as near, the ones that stand first."""
     own = world.config.readings.neighbors_are is NeighborsAre.SUB_SPECIES
     others = [
-        o
-        for o in land.organisms
-        if o is not seed and not (own and o.prediction != seed.prediction)
+        o for o in land.organisms if o is not seed and not (own and o.prediction != seed.prediction)
     ]
     others.sort(key=lambda o: squared_distance(center_of(o), center_of(seed)))
     return others[: world.config.breeding_neighbors]
@@ -398,9 +396,7 @@ def mutate(world: World, child: Organism, rng: Chance) -> None:
 def is_duplicate(one: Organism, other: Organism) -> bool:
     """Of one sub-species, with the same body."""
     return (
-        one.prediction == other.prediction
-        and one.lower == other.lower
-        and one.upper == other.upper
+        one.prediction == other.prediction and one.lower == other.lower and one.upper == other.upper
     )
 
 
@@ -503,9 +499,7 @@ def _rate(config: Config, distance: float, least: float) -> float:
             return min(1.0, config.corpse_rate / distance) if distance > 0.0 else 1.0
 
 
-def cover(
-    world: World, land: Landscape, x: list[float], reward: float, rng: Chance
-) -> None:
+def cover(world: World, land: Landscape, x: list[float], reward: float, rng: Chance) -> None:
     """A new rule around an input that none covers."""
     below, above = fractions_at(world, land, x, reward)
     lower, upper = [], []

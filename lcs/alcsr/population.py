@@ -27,12 +27,12 @@ class Population:
 
     def make_room(self) -> None:
         """Twice the room where it is short."""
-        if self.rules.count.max() + 1 >= self.rules.prediction.shape[1]:
-            self.rules = Rules(self.rules.count, *(_longer(each) for each in self.rules[1:]))
-        needed = (self.corpses.count + self.scratch.fed_count).max()
+        if self.rules.living.max() + 1 >= self.rules.prediction.shape[1]:
+            self.rules = Rules(self.rules.living, *(_longer(each) for each in self.rules[1:]))
+        needed = (self.corpses.buried + self.scratch.fed_count).max()
         if needed >= self.corpses.prediction.shape[1]:
             self.corpses = Corpses(
-                self.corpses.count, *(_longer(each) for each in self.corpses[1:])
+                self.corpses.buried, *(_longer(each) for each in self.corpses[1:])
             )
         self.scratch = _wider(self.scratch, self.rules.prediction.shape[1])
 
@@ -41,7 +41,7 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
     """Landscapes that nobody lives on, of which nothing is known."""
     a, n = actions, inputs
     rules = Rules(
-        count=np.zeros(a, np.int64),
+        living=np.zeros(a, np.int64),
         lower=np.zeros((a, ROOM, n)),
         upper=np.zeros((a, ROOM, n)),
         prediction=np.zeros((a, ROOM)),
@@ -56,7 +56,7 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         was_able=np.zeros((a, ROOM), np.bool_),
     )
     corpses = Corpses(
-        count=np.zeros(a, np.int64),
+        buried=np.zeros(a, np.int64),
         center=np.zeros((a, ROOM, n)),
         prediction=np.zeros((a, ROOM)),
         lower=np.zeros((a, ROOM, n)),
@@ -104,13 +104,12 @@ def _wider(scratch: Scratch, room: int) -> Scratch:
     if scratch.order.size >= room:
         return scratch
     more = room - scratch.order.size
-    wide = {
-        name: np.pad(getattr(scratch, name), (0, more)) for name in ("order", "dead", "pool", "able")
-    }
+    names = ("order", "dead", "pool", "able")
+    wide = {name: np.pad(getattr(scratch, name), (0, more)) for name in names}
     return scratch._replace(fed=np.pad(scratch.fed, ((0, 0), (0, more))), **wide)
 
 
 def bounds_of(population: Population, action: int) -> tuple[Array, Array]:
     """The bodies (rules, n) on one landscape."""
-    count = population.rules.count[action]
+    count = population.rules.living[action]
     return population.rules.lower[action, :count], population.rules.upper[action, :count]

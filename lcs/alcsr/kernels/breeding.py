@@ -52,7 +52,7 @@ def form_pool(rules: Rules, numbers: Numbers, scratch: Scratch, a: int, seed: in
     found = 0
     lower, upper = rules.lower[a], rules.upper[a]
     n = lower.shape[1]
-    for k in range(rules.count[a]):
+    for k in range(rules.living[a]):
         other = rules.prediction[a, k] != rules.prediction[a, seed]
         if k == seed or (numbers.neighbors_are == 1 and other):
             continue
@@ -98,7 +98,7 @@ def breed_in_pool(
                 able += 1
         if able < max(2.0, numbers.breeding_share * asked):
             return True
-        if rules.count[a] == rules.prediction.shape[1]:
+        if rules.living[a] == rules.prediction.shape[1]:
             return False
         first = pick(rng, able)
         second = pick(rng, able - 1)
@@ -106,7 +106,7 @@ def breed_in_pool(
             second += 1
         bear(rules, land, numbers, scratch, a, scratch.able[first], scratch.able[second], rng)
         if numbers.offspring_in == 1:
-            scratch.pool[size] = rules.count[a] - 1
+            scratch.pool[size] = rules.living[a] - 1
             size += 1
             scratch.progress[POOL] = size
 
@@ -123,7 +123,7 @@ def bear(
     rng: np.random.Generator,
 ) -> None:
     """An offspring by crossover, mutation and transfer of strength."""
-    k = rules.count[a]
+    k = rules.living[a]
     clear(rules, a, k, rules.prediction[a, one])
     cross(rules, land, numbers, a, k, one, other, rng)
     if numbers.mutation_is == 1:
@@ -138,7 +138,7 @@ def bear(
         given *= numbers.transfer * numbers.breed_level
         rules.strength[a, parent] -= given
         rules.strength[a, k] += given
-    rules.count[a] = k + 1
+    rules.living[a] = k + 1
     scratch.tally[BRED] += 1
 
 

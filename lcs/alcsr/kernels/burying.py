@@ -18,7 +18,7 @@ def bury(
     k: int,
 ) -> None:
     """A corpse, one of whose fractions is halved towards where it fed well; neighbors learn."""
-    at = corpses.count[a]
+    at = corpses.buried[a]
     lower, upper, center = corpses.lower[a, at], corpses.upper[a, at], corpses.center[a, at]
     span(rules, land, numbers, a, k, lower, upper)
     halved = halve(rules, a, k, lower, upper)
@@ -33,7 +33,7 @@ def bury(
             if numbers.corpses_learn == 0 or i == halved:
                 corpses.lower[a, other, i] += rate * (lower[i] - corpses.lower[a, other, i])
                 corpses.upper[a, other, i] += rate * (upper[i] - corpses.upper[a, other, i])
-    corpses.count[a] = at + 1
+    corpses.buried[a] = at + 1
 
 
 @part
@@ -94,7 +94,7 @@ def nearest_corpses(
 ) -> int:
     """How many stand in `scratch.near`, the nearest first, with their `scratch.distance`."""
     found = 0
-    for k in range(corpses.count[a]):
+    for k in range(corpses.buried[a]):
         if numbers.seeding_by == 1 and corpses.prediction[a, k] != prediction:
             continue
         squared = 0.0

@@ -24,7 +24,7 @@ def cover(
 ) -> None:
     """A new rule of landscape a around x (n,)."""
     fractions(corpses, numbers, scratch, a, x, reward)
-    k = rules.count[a]
+    k = rules.living[a]
     clear(rules, a, k, reward)
     for i in range(x.size):
         width = land.high[i] - land.low[i]
@@ -33,7 +33,7 @@ def cover(
         rules.lower[a, k, i] = max(low, land.low[i])
         rules.upper[a, k, i] = min(up, land.high[i])
     rules.volume[a, k] = volume_of(rules.lower[a, k], rules.upper[a, k], land)
-    rules.count[a] = k + 1
+    rules.living[a] = k + 1
     scratch.tally[COVERED] += 1
     if numbers.covered_is == 1:
         eat(rules, numbers, a, k, x, reward, 1.0)
@@ -58,10 +58,10 @@ def fractions(
     corpses: Corpses, numbers: Numbers, scratch: Scratch, a: int, x: Array, reward: float
 ) -> None:
     """Write the cover fractions at x: a half while seeding, later the nearest corpses' vote."""
-    count = corpses.count[a]
+    count = corpses.buried[a]
     if numbers.seeding_by == 1:
         count = 0
-        for k in range(corpses.count[a]):
+        for k in range(corpses.buried[a]):
             count += corpses.prediction[a, k] == reward
     lower, upper = scratch.fractions[0], scratch.fractions[1]
     if count < numbers.corpses:

@@ -13,9 +13,8 @@ from lcs.alcsr.kernels.layout import (
     ACTION,
     BRED,
     COVERED,
-    EATEN,
+    POISONED,
     STAGE,
-    STARVED,
     Corpses,
     Land,
     Numbers,
@@ -34,10 +33,10 @@ TEST, TRIED, FORCED = range(3)
 @part
 def has_room(rules: Rules, corpses: Corpses, scratch: Scratch) -> bool:
     """Whether whatever is fed may die, and an input be covered."""
-    for a in range(rules.count.size):
-        if rules.count[a] == rules.prediction.shape[1]:
+    for a in range(rules.living.size):
+        if rules.living[a] == rules.prediction.shape[1]:
             return False
-        if corpses.count[a] + scratch.fed_count[a] > corpses.prediction.shape[1]:
+        if corpses.buried[a] + scratch.fed_count[a] > corpses.prediction.shape[1]:
             return False
     return True
 
@@ -130,10 +129,10 @@ def run(
             reward = rewards[t, told[t, 1]]
             if not learn(rules, corpses, land, numbers, scratch, x, reward, rng):
                 return t
-        told[t, 2] = rules.count.sum()
+        told[t, 2] = rules.living.sum()
         told[t, 3] = scratch.tally[COVERED] + scratch.tally[BRED]
-        told[t, 4] = scratch.tally[STARVED] + scratch.tally[2] + scratch.tally[EATEN]
-    return inputs.shape[0]
+        told[t, 4] = scratch.tally[POISONED:].sum()
+    return len(inputs)
 
 
 @kernel
@@ -150,7 +149,7 @@ def begin_cycle(
     widen(rules, land, numbers, x)
     match(rules, land, x, scratch)
     if not has_room(rules, corpses, scratch):
-        return rules.count.size
+        return int(rules.living.size)
     a, is_test = choose(rules, numbers, scratch, rng)
     scratch.progress[ACTION] = a
     return -1 - a if is_test else a
@@ -187,7 +186,7 @@ def decide(
         match(rules, land, inputs[t], scratch)
         known = True
         expected[t] = np.nan
-        for a in range(rules.count.size):
+        for a in range(rules.living.size):
             known = known and scratch.fed_count[a] > 0
         if known:
             actions[t] = best_of(rules, numbers, scratch, rng)

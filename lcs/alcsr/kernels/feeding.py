@@ -25,9 +25,7 @@ def error_of(numbers: Numbers, prediction: float, reward: float) -> float:
 
 
 @part
-def feed(
-    rules: Rules, numbers: Numbers, scratch: Scratch, a: int, x: Array, reward: float
-) -> None:
+def feed(rules: Rules, numbers: Numbers, scratch: Scratch, a: int, x: Array, reward: float) -> None:
     """Share a unit of food among the action set of landscape a: the wrong type poisons."""
     share = float(scratch.fed_count[a])
     for j in range(scratch.fed_count[a]):
@@ -92,11 +90,11 @@ def remove(rules: Rules, scratch: Scratch, a: int) -> None:
             fed[kept] = fed[j]
             kept += 1
     scratch.fed_count[a] = kept
-    for k in range(rules.count[a] - 1, -1, -1):
+    for k in range(rules.living[a] - 1, -1, -1):
         if scratch.dead[k]:
             scratch.dead[k] = False
-            last = rules.count[a] - 1
-            rules.count[a] = last
+            last = rules.living[a] - 1
+            rules.living[a] = last
             if k != last:
                 place(rules, a, last, k)
                 for j in range(kept):

@@ -1,7 +1,7 @@
 """What the kernels work on: arrays of all landscapes, and the constants.
 
 A: actions, one landscape each; C: room for rules; M: room for corpses; n: inputs.
-Rules of landscape a stand in [a, :count[a]]; where one is removed the last takes its place.
+Rules of landscape a stand in [a, :living[a]]; where one is removed the last takes its place.
 """
 
 from typing import NamedTuple
@@ -10,9 +10,9 @@ from lcs.arrays import Array, Booleans, Integers
 
 
 class Rules(NamedTuple):
-    """All rules. (A, C, n): lower, upper, right_center, wrong_center; count (A,); else (A, C)."""
+    """All rules. (A, C, n): lower, upper and centers; living (A,): how many; else (A, C)."""
 
-    count: Integers
+    living: Integers
     lower: Array
     upper: Array
     prediction: Array
@@ -28,9 +28,9 @@ class Rules(NamedTuple):
 
 
 class Corpses(NamedTuple):
-    """The mausoleums. (A, M, n): center and cover fractions; count (A,); prediction (A, M)."""
+    """The mausoleums. (A, M, n): center and fractions; buried (A,): how many; else (A, M)."""
 
-    count: Integers
+    buried: Integers
     center: Array
     prediction: Array
     lower: Array

@@ -21,8 +21,8 @@ def widen(rules: Rules, land: Land, numbers: Numbers, x: Array) -> None:
             land.high[i] = x[i]
             grown = True
     if grown:
-        for a in range(rules.count.size):
-            for k in range(rules.count[a]):
+        for a in range(rules.living.size):
+            for k in range(rules.living[a]):
                 rules.volume[a, k] = volume_of(rules.lower[a, k], rules.upper[a, k], land)
 
 
@@ -41,10 +41,10 @@ def volume_of(lower: Array, upper: Array, land: Land) -> float:
 def match(rules: Rules, land: Land, x: Array, scratch: Scratch) -> None:
     """Fill the potential action sets."""
     n = x.size
-    for a in range(rules.count.size):
+    for a in range(rules.living.size):
         found = 0
         lower, upper = rules.lower[a], rules.upper[a]
-        for k in range(rules.count[a]):
+        for k in range(rules.living[a]):
             inside = True
             for i in range(n):
                 at = x[i]
@@ -63,13 +63,15 @@ def match(rules: Rules, land: Land, x: Array, scratch: Scratch) -> None:
 @part
 def is_mature(rules: Rules, numbers: Numbers, a: int, k: int) -> bool:
     """Table 4.3."""
-    return rules.experience[a, k] > numbers.mature_level * rules.volume[a, k]
+    mature: bool = rules.experience[a, k] > numbers.mature_level * rules.volume[a, k]
+    return mature
 
 
 @part
 def can_breed(rules: Rules, numbers: Numbers, a: int, k: int) -> bool:
     """Table 4.3."""
-    return rules.strength[a, k] >= numbers.breed_level * rules.volume[a, k]
+    able: bool = rules.strength[a, k] >= numbers.breed_level * rules.volume[a, k]
+    return able
 
 
 @part
@@ -93,7 +95,7 @@ def votes(rules: Rules, numbers: Numbers, scratch: Scratch, a: int) -> bool:
     """Whether anybody votes for action a."""
     if numbers.vote_of_none == 0:
         return bool(scratch.fed_count[a] > 0)
-    for j in range(scratch.fed_count[a]):
+    for j in range(scratch.fed_count[a]):  # noqa: SIM110  numba closes over no array
         if rules.strength[a, scratch.fed[a, j]] > 0.0:
             return True
     return False
@@ -110,7 +112,7 @@ def choose(
     rules: Rules, numbers: Numbers, scratch: Scratch, rng: np.random.Generator
 ) -> tuple[int, bool]:
     """The action, and whether this is a test; `scratch.votes` are of a test."""
-    actions = rules.count.size
+    actions = rules.living.size
     empty = 0
     for a in range(actions):
         if not votes(rules, numbers, scratch, a):
@@ -127,11 +129,12 @@ def choose(
 def best_of(rules: Rules, numbers: Numbers, scratch: Scratch, rng: np.random.Generator) -> int:
     """The action with the highest vote; of several, one at random."""
     best = 0
-    for a in range(rules.count.size):
+    for a in range(rules.living.size):
         scratch.votes[a] = vote(rules, numbers, a, scratch.fed[a, : scratch.fed_count[a]])
     highest = scratch.votes.max()
-    for a in range(rules.count.size):
+    for a in range(rules.living.size):
         if scratch.votes[a] == highest:
             scratch.order[best] = a
             best += 1
-    return scratch.order[0] if best == 1 else scratch.order[pick(rng, best)]
+    chosen: int = scratch.order[0 if best == 1 else pick(rng, best)]
+    return chosen
