@@ -1,4 +1,4 @@
-"""One cycle of ALCSR in plain Python: the definition that is read, and that the kernels are held to.
+"""One cycle of ALCSR in plain Python: the definition that is read; kernels give the same bits.
 
 Thesis, sections 4.3.1 to 4.3.5, in the order of the text. It is slow on purpose: lists of
 organisms, one idea to a function. Chance is drawn in the order in which the lines stand, so that

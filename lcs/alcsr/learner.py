@@ -1,0 +1,171 @@
+"""ALCSR as one uses it: cycle by cycle, or over many problems at once."""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+import numpy.typing as npt
+
+from lcs.alcsr.config import Config
+from lcs.alcsr.kernels import cycle
+from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
+from lcs.alcsr.population import Population, empty
+from lcs.arrays import Array, Booleans, Integers
+from lcs.faults import LearnerError
+
+REWARD_RANGE: Final = 2000.0
+"""From -1000 to 1000 (4.3.2)."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Course:
+    """What went on in T cycles, all (T,).
+
+    kind: `TEST`, `TRIED` or `FORCED` of `lcs.alcsr.kernels.cycle`. action: that was taken.
+    error: of a test |expected - given reward|, else NaN. rules, births, deaths: so far, after it.
+    """
+
+    kind: Integers
+    action: Integers
+    error: Array
+    rules: Integers
+    births: Integers
+    deaths: Integers
+
+    @property
+    def is_test(self) -> Booleans:
+        """Which cycles tested."""
+        found: Booleans = self.kind == cycle.TEST
+        return found
+
+
+@final
+class ALCSR:
+    """A learner with a random state of its own.
+
+    Args:
+        actions: how many there are.
+        inputs: how many numbers an input has.
+        config: the constants, and how open places of the thesis are read.
+        reward_range: from the lowest to the highest reward.
+        seed: of all its chance.
+    """
+
+    def __init__(
+        self,
+        actions: int,
+        inputs: int,
+        config: Config | None = None,
+        *,
+        reward_range: float = REWARD_RANGE,
+        seed: int = 0,
+    ) -> None:
+        self.config = config or Config()
+        self.population: Population = empty(actions, inputs, self.config, reward_range)
+        self.chance = np.random.default_rng(seed)
+        self._waits_with: Array | None = None
+
+    def act(self, x: npt.ArrayLike) -> int:
+        """The action on an input (n,): tried, or the best; `learn` follows one that was tried.
+
+        Raises:
+            LearnerError: not n finite numbers, or the reward of the action before is owed.
+        """
+        if self._waits_with is not None:
+            raise LearnerError("the action before waits for its reward: call learn(reward) first")
+        given = self._checked(x)
+        actions = self.population.rules.living.size
+        while True:
+            said = int(cycle.begin_cycle(*self._parts(), given, self.chance))
+            if said < actions:
+                break
+            self.population.make_room()
+        if said < 0:
+            return -1 - said
+        self._waits_with = given
+        return said
+
+    @property
+    def is_trying(self) -> bool:
+        """Whether the last action was tried and waits for its reward."""
+        return self._waits_with is not None
+
+    def learn(self, reward: float) -> None:
+        """The reward of the action that was tried; of one that was a test nothing is learnt.
+
+        Raises:
+            LearnerError: the reward is not finite.
+        """
+        if not np.isfinite(reward):
+            raise LearnerError(f"a reward is a finite number, and {reward} is none")
+        if self._waits_with is None:
+            return
+        while not cycle.end_cycle(*self._parts(), self._waits_with, float(reward), self.chance):
+            self.population.make_room()
+        self._waits_with = None
+
+    def run(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> Course:
+        """A cycle for each input (T, n), where action a would be given rewards (T, A).
+
+        Raises:
+            LearnerError: they are of other sizes, or not finite.
+        """
+        x, given = self._all_checked(inputs), np.ascontiguousarray(rewards, np.float64)
+        if given.shape != (len(x), self.population.rules.living.size):
+            raise LearnerError(
+                f"rewards are {given.shape}: {len(x)} inputs and "
+                f"{self.population.rules.living.size} actions need as many rows and columns"
+            )
+        if not np.isfinite(given).all():
+            raise LearnerError("a reward is not finite")
+        told, errors = np.zeros((len(x), 5), np.int64), np.zeros(len(x))
+        done = 0
+        while done < len(x):
+            done = cycle.run(*self._parts(), x, given, done, told, errors, self.chance)
+            if done < len(x):
+                self.population.make_room()
+        kind, action, rules, births, deaths = told.T
+        return Course(kind, action, errors, rules, births, deaths)
+
+    def decide(self, inputs: npt.ArrayLike) -> tuple[Integers, Array]:
+        """The best actions (T,), -1 where some action is unknown, and expected rewards (T, A).
+
+        Nothing is learnt. Of equal actions one is taken at random, by a state of its own.
+
+        Raises:
+            LearnerError: not n finite numbers each.
+        """
+        x = self._all_checked(inputs)
+        actions = np.zeros(len(x), np.int64)
+        expected = np.zeros((len(x), self.population.rules.living.size))
+        parts = self.population
+        cycle.decide(
+            parts.rules,
+            parts.land,
+            parts.numbers,
+            parts.scratch,
+            x,
+            actions,
+            expected,
+            np.random.default_rng(0),
+        )
+        return actions, expected
+
+    def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
+        parts = self.population
+        return parts.rules, parts.corpses, parts.land, parts.numbers, parts.scratch
+
+    def _checked(self, x: npt.ArrayLike) -> Array:
+        given: Array = self._all_checked(np.asarray(x, np.float64)[None])[0]
+        return given
+
+    def _all_checked(self, inputs: npt.ArrayLike) -> Array:
+        x = np.ascontiguousarray(inputs, np.float64)
+        n = self.population.land.low.size
+        if x.ndim != 2 or x.shape[1] != n:
+            raise LearnerError(f"an input is {n} numbers, and not of shape {x.shape[1:]}")
+        if not np.isfinite(x).all():
+            row = int(np.flatnonzero(~np.isfinite(x).all(axis=1))[0])
+            raise LearnerError(f"input {row} is not finite: {x[row].tolist()}")
+        return x

@@ -1,0 +1,74 @@
+"""The learner as it is used: act and learn, run, decide, and what it refuses."""
+
+import numpy as np
+import pytest
+
+from lcs.alcsr.config import Config
+from lcs.alcsr.learner import ALCSR
+from lcs.faults import LearnerError
+from lcs.problems.classes import SKEWED, checkerboard, multiplexer
+
+
+def test_cycle_by_cycle_is_the_same_as_all_at_once() -> None:
+    x, rewards, _ = checkerboard(3).drawn(3_000, np.random.default_rng(1))
+    at_once, stepwise = ALCSR(2, 2, seed=3), ALCSR(2, 2, seed=3)
+
+    course = at_once.run(x, rewards)
+    taken = []
+    for one, given in zip(x, rewards, strict=True):
+        taken.append(stepwise.act(one))
+        stepwise.learn(given[taken[-1]])
+
+    assert taken == course.action.tolist()
+    for ours, theirs in zip(at_once.population.rules, stepwise.population.rules, strict=True):
+        assert np.array_equal(ours, theirs)
+
+
+def test_two_learners_in_one_process_do_not_disturb_each_other() -> None:
+    x, rewards, _ = checkerboard(3).drawn(1_000, np.random.default_rng(1))
+    alone = ALCSR(2, 2, seed=5).run(x, rewards)
+    one, other = ALCSR(2, 2, seed=5), ALCSR(2, 2, seed=6)
+    actions = []
+    for part in np.split(np.arange(1_000), 10):
+        actions += one.run(x[part], rewards[part]).action.tolist()
+        other.run(x[part], rewards[part])
+        np.random.default_rng().random()
+
+    assert actions == alone.action.tolist()
+
+
+def test_a_checkerboard_is_learnt() -> None:
+    board = checkerboard(3)
+    x, rewards, _ = board.drawn(40_000, np.random.default_rng(2))
+    learner = ALCSR(2, 2, Config(), seed=1)
+    learner.run(x, rewards)
+
+    fresh, _, right = board.drawn(5_000, np.random.default_rng(3))
+    actions, _ = learner.decide(fresh)
+
+    assert np.mean(actions == right) > 0.95
+
+
+@pytest.mark.parametrize("thresholds", [(0.5,), SKEWED])
+def test_the_multiplexer_asks_the_bit_that_its_address_names(thresholds: tuple[float, ...]) -> None:
+    problem = multiplexer(2, thresholds)
+    at = np.resize(thresholds, 6)
+    x = np.random.default_rng(0).random((200, 6))
+
+    for one, label in zip(x, problem.label(x), strict=True):
+        high = one >= at
+        asked = 2 * int(high[0]) + int(high[1])
+        assert label == high[2 + asked]
+
+
+def test_what_is_no_input_and_what_is_no_reward_is_refused() -> None:
+    learner = ALCSR(2, 3)
+    with pytest.raises(LearnerError, match="3 numbers"):
+        learner.act([1.0, 2.0])
+    with pytest.raises(LearnerError, match="not finite"):
+        learner.act([1.0, np.nan, 2.0])
+    learner.act([0.1, 0.2, 0.3])
+    with pytest.raises(LearnerError, match="finite number"):
+        learner.learn(np.inf)
+    with pytest.raises(LearnerError, match="waits for its reward"):
+        learner.act([0.1, 0.2, 0.3])
