@@ -7,11 +7,9 @@ import numpy as np
 
 from lcs.alcsr.config import Config
 from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
-from lcs.arrays import Array
 
 ROOM: Final = 1024
 """For rules and for corpses of each action, at first."""
-EMPTY_RANGE: Final = np.inf
 
 
 @final
@@ -75,7 +73,6 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         distance=np.zeros(neighbors),
         votes=np.zeros(a),
         fractions=np.zeros((2, n)),
-        child=np.zeros((2, n)),
         progress=np.array([-1, 0, 0, 0]),
         tally=np.zeros(5, np.int64),
     )
@@ -107,9 +104,3 @@ def _wider(scratch: Scratch, room: int) -> Scratch:
     names = ("order", "dead", "pool", "able")
     wide = {name: np.pad(getattr(scratch, name), (0, more)) for name in names}
     return scratch._replace(fed=np.pad(scratch.fed, ((0, 0), (0, more))), **wide)
-
-
-def bounds_of(population: Population, action: int) -> tuple[Array, Array]:
-    """The bodies (rules, n) on one landscape."""
-    count = population.rules.living[action]
-    return population.rules.lower[action, :count], population.rules.upper[action, :count]

@@ -93,9 +93,9 @@ class Scratch(NamedTuple):
 
     fed (A, C), fed_count (A,): the potential action sets. order (C,), dead (C,): in fights and
     deaths. pool (C,): of breeding; able (C,): those fit for it. near, distance (K,): neighbors.
-    votes (A,). fractions (2, n): of covering. child (2, n): an offspring's bounds.
+    votes (A,). fractions (2, n): of covering.
     progress: `STAGE`, `SEED`, `POOL`, `ACTION`.
-    tally: `BORN_BY_COVERING`, `BORN_BY_BREEDING`, `DIED_POISONED`, `DIED_STARVED`, `DIED_EATEN`.
+    tally: how many were `COVERED` and `BRED`, and died `POISONED`, `STARVED` and `EATEN`.
     """
 
     fed: Integers
@@ -108,7 +108,6 @@ class Scratch(NamedTuple):
     distance: Array
     votes: Array
     fractions: Array
-    child: Array
     progress: Integers
     tally: Integers
 
