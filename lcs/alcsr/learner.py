@@ -77,7 +77,7 @@ class ALCSR:
         given = self._checked(x)
         actions = self.population.rules.living.size
         while True:
-            said = int(cycle.begin_cycle(*self._parts(), given, self.chance))
+            said = int(cycle.begin(*self._parts(), given, self.chance))
             if said < actions:
                 break
             self.population.make_room()
@@ -101,7 +101,7 @@ class ALCSR:
             raise LearnerError(f"a reward is a finite number, and {reward} is none")
         if self._waits_with is None:
             return
-        while not cycle.end_cycle(*self._parts(), self._waits_with, float(reward), self.chance):
+        while not cycle.learn(*self._parts(), self._waits_with, float(reward), self.chance):
             self.population.make_room()
         self._waits_with = None
 

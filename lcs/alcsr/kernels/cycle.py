@@ -64,7 +64,27 @@ def live_on(
     return True
 
 
-@part
+@kernel
+def begin(
+    rules: Rules,
+    corpses: Corpses,
+    land: Land,
+    numbers: Numbers,
+    scratch: Scratch,
+    x: Array,
+    rng: np.random.Generator,
+) -> int:
+    """The action on x (n,); -1 - action of a test, A where there is no room."""
+    widen(rules, land, numbers, x)
+    match(rules, land, x, scratch)
+    if not has_room(rules, corpses, scratch):
+        return int(rules.living.size)
+    a, is_test = choose(rules, numbers, scratch, rng)
+    scratch.progress[ACTION] = a
+    return -1 - a if is_test else a
+
+
+@kernel
 def learn(
     rules: Rules,
     corpses: Corpses,
@@ -100,25 +120,24 @@ def run(
     scratch: Scratch,
     inputs: Array,
     rewards: Array,
-    begin: int,
+    first: int,
     told: Integers,
     errors: Array,
     rng: np.random.Generator,
 ) -> int:
-    """Cycles on inputs (T, n) from `begin` on, with rewards (T, A); where it stopped, T at the end.
+    """Cycles on inputs (T, n) from `first` on, with rewards (T, A); where it stopped, T at the end.
 
     told (T, 5): `TEST`, `TRIED` or `FORCED`; the action; rules; births; deaths so far.
     errors (T,): of a test |vote - reward|, else NaN.
     """
-    for t in range(begin, inputs.shape[0]):
+    for t in range(first, inputs.shape[0]):
         x = inputs[t]
         if scratch.progress[STAGE] < 0:
-            widen(rules, land, numbers, x)
-            match(rules, land, x, scratch)
-            if not has_room(rules, corpses, scratch):
+            said = begin(rules, corpses, land, numbers, scratch, x, rng)
+            if said == rules.living.size:
                 return t
-            a, is_test = choose(rules, numbers, scratch, rng)
-            scratch.progress[ACTION] = a
+            is_test = said < 0
+            a = -1 - said if is_test else said
             told[t, 1] = a
             told[t, 0] = TRIED if scratch.fed_count[a] > 0 else FORCED
             errors[t] = np.nan
@@ -133,41 +152,6 @@ def run(
         told[t, 3] = scratch.tally[COVERED] + scratch.tally[BRED]
         told[t, 4] = scratch.tally[POISONED:].sum()
     return len(inputs)
-
-
-@kernel
-def begin_cycle(
-    rules: Rules,
-    corpses: Corpses,
-    land: Land,
-    numbers: Numbers,
-    scratch: Scratch,
-    x: Array,
-    rng: np.random.Generator,
-) -> int:
-    """The action on x (n,); -1 - action of a test, A where there is no room."""
-    widen(rules, land, numbers, x)
-    match(rules, land, x, scratch)
-    if not has_room(rules, corpses, scratch):
-        return int(rules.living.size)
-    a, is_test = choose(rules, numbers, scratch, rng)
-    scratch.progress[ACTION] = a
-    return -1 - a if is_test else a
-
-
-@kernel
-def end_cycle(
-    rules: Rules,
-    corpses: Corpses,
-    land: Land,
-    numbers: Numbers,
-    scratch: Scratch,
-    x: Array,
-    reward: float,
-    rng: np.random.Generator,
-) -> bool:
-    """Learn from the reward of the action that was begun; False where there is no room."""
-    return learn(rules, corpses, land, numbers, scratch, x, reward, rng)
 
 
 @kernel
