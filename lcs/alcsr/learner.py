@@ -1,7 +1,6 @@
 """ALCSR as one uses it: cycle by cycle, or over many problems at once."""
 
-from dataclasses import dataclass
-from typing import Final, final
+from typing import Any, Final, final
 
 import numpy as np
 import numpy.typing as npt
@@ -10,34 +9,16 @@ from lcs.alcsr.config import Config
 from lcs.alcsr.kernels import cycle
 from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
 from lcs.alcsr.population import Population, empty
-from lcs.arrays import Array, Booleans, Integers
+from lcs.arrays import Array, Integers
+from lcs.course import Course
 from lcs.faults import LearnerError
+from lcs.rules.table import RuleTable
 
 REWARD_RANGE: Final = 2000.0
 """From -1000 to 1000 (4.3.2)."""
 
-
-@final
-@dataclass(frozen=True, eq=False, slots=True)
-class Course:
-    """What went on in T cycles, all (T,).
-
-    kind: `TEST`, `TRIED` or `FORCED` of `lcs.alcsr.kernels.cycle`. action: that was taken.
-    error: of a test |expected - given reward|, else NaN. rules, births, deaths: so far, after it.
-    """
-
-    kind: Integers
-    action: Integers
-    error: Array
-    rules: Integers
-    births: Integers
-    deaths: Integers
-
-    @property
-    def is_test(self) -> Booleans:
-        """Which cycles tested."""
-        found: Booleans = self.kind == cycle.TEST
-        return found
+TINY: Final = 1e-12
+"""The weight of those with no strength: they vote where nobody else does."""
 
 
 @final
@@ -151,6 +132,30 @@ class ALCSR:
             np.random.default_rng(0),
         )
         return actions, expected
+
+    def rules(self) -> RuleTable:
+        """What it knows now, as rules; their weight is what their vote counts (4.3.2)."""
+        rules, land, config = self.population.rules, self.population.land, self.config
+        living = [slice(0, int(count)) for count in rules.living]
+
+        def of_all(values: Any) -> Any:
+            return np.concatenate([values[a, those] for a, those in enumerate(living)])
+
+        volume, experience = of_all(rules.volume), of_all(rules.experience)
+        weight = of_all(rules.strength) / volume
+        weight[experience <= config.mature_level * volume] *= config.immature_vote
+        return RuleTable(
+            actions=rules.living.size,
+            action=np.repeat(np.arange(rules.living.size), rules.living),
+            lower=of_all(rules.lower),
+            upper=of_all(rules.upper),
+            prediction=of_all(rules.prediction),
+            weight=np.maximum(weight, TINY),
+            right=of_all(rules.right),
+            wrong=of_all(rules.wrong),
+            low=land.low.copy(),
+            high=land.high.copy(),
+        )
 
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population

@@ -1,0 +1,1 @@
+"""Rules as they are read, written, drawn and thinned out, whichever learner found them."""
