@@ -5,9 +5,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from lcs.alcsr import definition
 from lcs.alcsr.config import Config, Readings
-from lcs.alcsr.definition import Landscape, World
+from lcs.alcsr.definition.cycle import cycle as cycle_as_defined
+from lcs.alcsr.definition.organisms import Landscape, World
 from lcs.alcsr.kernels import cycle
 from lcs.alcsr.population import Population, empty
 from lcs.arrays import Array, Integers
@@ -56,7 +56,7 @@ def defined(config: Config, inputs: Array, rewards: Array) -> tuple[World, list[
     rng = np.random.default_rng(7)
     actions, living = [], []
     for x, reward in zip(inputs.tolist(), rewards.tolist(), strict=True):
-        actions.append(definition.cycle(world, x, reward.__getitem__, rng).action)
+        actions.append(cycle_as_defined(world, x, reward.__getitem__, rng).action)
         living.append(sum(len(land.organisms) for land in world.landscapes))
     return world, actions, living
 
