@@ -53,8 +53,7 @@ class ALCSR:
         Raises:
             LearnerError: not n finite numbers, or the reward of the action before is owed.
         """
-        if self._waits_with is not None:
-            raise LearnerError("the action before waits for its reward: call learn(reward) first")
+        self._refuse_while_waiting()
         given = self._checked(x)
         actions = self.population.rules.living.size
         while True:
@@ -90,16 +89,9 @@ class ALCSR:
         """A cycle for each input (T, n), where action a would be given rewards (T, A).
 
         Raises:
-            LearnerError: they are of other sizes, or not finite.
+            LearnerError: they are of other sizes or not finite, or a reward is owed.
         """
-        x, given = self._all_checked(inputs), np.ascontiguousarray(rewards, np.float64)
-        if given.shape != (len(x), self.population.rules.living.size):
-            raise LearnerError(
-                f"rewards are {given.shape}: {len(x)} inputs and "
-                f"{self.population.rules.living.size} actions need as many rows and columns"
-            )
-        if not np.isfinite(given).all():
-            raise LearnerError("a reward is not finite")
+        x, given = self._problems(inputs, rewards)
         told, errors = np.zeros((len(x), 5), np.int64), np.zeros(len(x))
         done = 0
         while done < len(x):
@@ -108,6 +100,21 @@ class ALCSR:
                 self.population.make_room()
         kind, action, rules, births, deaths = told.T
         return Course(kind, action, errors, rules, births, deaths)
+
+    def teach(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> None:
+        """Learn the rewards of all actions (T, A) for each input (T, n), as where labels are known.
+
+        A row is a cycle for each action in turn, none of which is chosen.
+
+        Raises:
+            LearnerError: they are of other sizes or not finite, or a reward is owed.
+        """
+        x, given = self._problems(inputs, rewards)
+        done = 0
+        while done < len(x):
+            done = cycle.teach(*self._parts(), x, given, done, self.chance)
+            if done < len(x):
+                self.population.make_room()
 
     def decide(self, inputs: npt.ArrayLike) -> tuple[Integers, Array]:
         """The best actions (T,), -1 where some action is unknown, and expected rewards (T, A).
@@ -121,11 +128,12 @@ class ALCSR:
         actions = np.zeros(len(x), np.int64)
         expected = np.zeros((len(x), self.population.rules.living.size))
         parts = self.population
+        waiting = parts.scratch  # whose action sets `learn` still needs
         cycle.decide(
             parts.rules,
             parts.land,
             parts.numbers,
-            parts.scratch,
+            waiting._replace(fed=waiting.fed.copy(), fed_count=waiting.fed_count.copy()),
             x,
             actions,
             expected,
@@ -142,7 +150,8 @@ class ALCSR:
             return np.concatenate([values[a, those] for a, those in enumerate(living)])
 
         volume, experience = of_all(rules.volume), of_all(rules.experience)
-        weight = of_all(rules.strength) / volume
+        weight = np.zeros_like(volume)
+        np.divide(of_all(rules.strength), volume, out=weight, where=volume > 0.0)
         weight[experience <= config.mature_level * volume] *= config.immature_vote
         return RuleTable(
             actions=rules.living.size,
@@ -160,6 +169,22 @@ class ALCSR:
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population
         return parts.rules, parts.corpses, parts.land, parts.numbers, parts.scratch
+
+    def _refuse_while_waiting(self) -> None:
+        if self._waits_with is not None:
+            raise LearnerError("the action before waits for its reward: call learn(reward) first")
+
+    def _problems(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> tuple[Array, Array]:
+        self._refuse_while_waiting()
+        x, given = self._all_checked(inputs), np.ascontiguousarray(rewards, np.float64)
+        if given.shape != (len(x), self.population.rules.living.size):
+            raise LearnerError(
+                f"rewards are {given.shape}: {len(x)} inputs and "
+                f"{self.population.rules.living.size} actions need as many rows and columns"
+            )
+        if not np.isfinite(given).all():
+            raise LearnerError("a reward is not finite")
+        return x, given
 
     def _checked(self, x: npt.ArrayLike) -> Array:
         given: Array = self._all_checked(np.asarray(x, np.float64)[None])[0]

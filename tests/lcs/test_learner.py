@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 
 from lcs.alcsr.config import Config
+from lcs.alcsr.definition.accuracy import feed
+from lcs.alcsr.definition.covering import cover
+from lcs.alcsr.definition.cycle import live_on
+from lcs.alcsr.definition.organisms import Landscape, World, covers, experience
 from lcs.alcsr.learner import ALCSR
 from lcs.faults import LearnerError
 from lcs.problems.classes import SKEWED, checkerboard, multiplexer
@@ -72,3 +76,61 @@ def test_what_is_no_input_and_what_is_no_reward_is_refused() -> None:
         learner.learn(np.inf)
     with pytest.raises(LearnerError, match="waits for its reward"):
         learner.act([0.1, 0.2, 0.3])
+
+
+def test_all_rewards_of_an_input_are_learnt_in_turn_as_the_definition_has_it() -> None:
+    x, rewards, _ = checkerboard(3).drawn(1_500, np.random.default_rng(2))
+    learner = ALCSR(2, 2, seed=1)
+    learner.teach(x[:1_000], rewards[:1_000])
+    learner.teach(x[1_000:], rewards[1_000:])
+
+    world = World(Config(), [Landscape(), Landscape()], [np.inf] * 2, [-np.inf] * 2, 2000.0)
+    rng = np.random.default_rng(1)
+    for one, given in zip(x.tolist(), rewards.tolist(), strict=True):
+        experience(world, one)
+        for land, reward in zip(world.landscapes, given, strict=True):
+            feeding = [each for each in land.organisms if covers(world, each, one)]
+            if feeding:
+                feed(world, feeding, one, reward)
+                live_on(world, land, feeding, rng)
+            else:
+                cover(world, land, one, reward, rng)
+
+    rules = learner.population.rules
+    for a, land in enumerate(world.landscapes):
+        assert rules.living[a] == len(land.organisms)
+        for name in ("lower", "upper", "prediction", "strength", "experience"):
+            expected = [getattr(each, name) for each in land.organisms]
+            assert getattr(rules, name)[a, : rules.living[a]].tolist() == expected
+
+
+def test_the_weights_of_a_table_are_numbers_above_zero() -> None:
+    learner = ALCSR(2, 2)
+    x, rewards, _ = checkerboard(3).drawn(20, np.random.default_rng(2))
+    learner.teach(x, rewards)  # the first rule is a point: the range was one then
+
+    assert np.all(learner.rules().weight > 0.0)
+    assert np.all(np.isfinite(learner.rules().weight))
+
+
+def test_asking_between_an_action_and_its_reward_changes_nothing() -> None:
+    x, rewards, _ = checkerboard(3).drawn(300, np.random.default_rng(1))
+    asked, alone = ALCSR(2, 2, seed=3), ALCSR(2, 2, seed=3)
+    for one, given in zip(x, rewards, strict=True):
+        for learner in (asked, alone):
+            action = learner.act(one)
+            if learner is asked:
+                asked.decide(x[:5])
+            learner.learn(given[action])
+
+    for ours, theirs in zip(asked.population.rules, alone.population.rules, strict=True):
+        assert np.array_equal(ours, theirs)
+
+
+def test_many_cycles_are_refused_while_a_reward_is_owed() -> None:
+    learner = ALCSR(2, 2)
+    learner.act([0.1, 0.2])
+    with pytest.raises(LearnerError, match="waits for its reward"):
+        learner.run([[0.1, 0.2]], [[1.0, -1.0]])
+    with pytest.raises(LearnerError, match="waits for its reward"):
+        learner.teach([[0.1, 0.2]], [[1.0, -1.0]])

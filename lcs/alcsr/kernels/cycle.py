@@ -64,6 +64,16 @@ def live_on(
     return True
 
 
+@part
+def ready(
+    rules: Rules, corpses: Corpses, land: Land, numbers: Numbers, scratch: Scratch, x: Array
+) -> bool:
+    """Look who covers x (n,); False where there is no room for what may follow."""
+    widen(rules, land, numbers, x)
+    match(rules, land, x, scratch)
+    return has_room(rules, corpses, scratch)
+
+
 @kernel
 def begin(
     rules: Rules,
@@ -75,9 +85,7 @@ def begin(
     rng: np.random.Generator,
 ) -> int:
     """The action on x (n,); -1 - action of a test, A where there is no room."""
-    widen(rules, land, numbers, x)
-    match(rules, land, x, scratch)
-    if not has_room(rules, corpses, scratch):
+    if not ready(rules, corpses, land, numbers, scratch, x):
         return int(rules.living.size)
     a, is_test = choose(rules, numbers, scratch, rng)
     scratch.progress[ACTION] = a
@@ -151,6 +159,34 @@ def run(
         told[t, 2] = rules.living.sum()
         told[t, 3] = scratch.tally[COVERED] + scratch.tally[BRED]
         told[t, 4] = scratch.tally[POISONED:].sum()
+    return len(inputs)
+
+
+@kernel
+def teach(
+    rules: Rules,
+    corpses: Corpses,
+    land: Land,
+    numbers: Numbers,
+    scratch: Scratch,
+    inputs: Array,
+    rewards: Array,
+    first: int,
+    rng: np.random.Generator,
+) -> int:
+    """Learn all rewards (T, A) of inputs (T, n) from `first` on; where it stopped, T at the end."""
+    progress = scratch.progress
+    for t in range(first, inputs.shape[0]):
+        x = inputs[t]
+        if progress[STAGE] < 0:
+            if not ready(rules, corpses, land, numbers, scratch, x):
+                return t
+            progress[ACTION] = 0
+        while progress[ACTION] < rules.living.size:
+            reward = rewards[t, progress[ACTION]]
+            if not learn(rules, corpses, land, numbers, scratch, x, reward, rng):
+                return t
+            progress[ACTION] += 1
     return len(inputs)
 
 
