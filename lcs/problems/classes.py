@@ -1,4 +1,4 @@
-"""Problems of one step: an input has a class, and naming it is rewarded."""
+"""Problems by formula: inputs uniform in a unit cube, of which a rule tells the class."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,8 +7,9 @@ from typing import Final, final
 import numpy as np
 
 from lcs.arrays import Array, Integers
+from lcs.inputs import Input
+from lcs.problems.rewards import rewards_of
 
-RIGHT, WRONG = 1000.0, -1000.0
 SKEWED: Final = (0.25, 0.75)
 """The thresholds of experiment 2, in alternate dimensions (4.4)."""
 
@@ -27,14 +28,26 @@ class Classes:
     label: Callable[[Array], Integers]
     flipped: float = 0.0
 
+    @property
+    def described(self) -> tuple[Input, ...]:
+        """x1, x2 and so on, from 0 to 1."""
+        return tuple(Input(f"x{i + 1}", low=0.0, high=1.0) for i in range(self.inputs))
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The numbers of the classes."""
+        return tuple(str(each) for each in range(self.classes))
+
     def drawn(self, count: int, chance: np.random.Generator) -> tuple[Array, Array, Integers]:
         """So many inputs (T, n), the rewards of all classes (T, A) and the right ones (T,)."""
         x = chance.random((count, self.inputs))
         right = self.label(x)
-        is_right = np.arange(self.classes) == right[:, None]
-        if self.flipped > 0.0:
-            is_right ^= chance.random(is_right.shape) < self.flipped
-        return x, np.where(is_right, RIGHT, WRONG), right
+        return x, rewards_of(right, self.classes, self.flipped, chance), right
+
+    def fresh(self, count: int, chance: np.random.Generator) -> tuple[Array, Integers]:
+        """So many inputs (T, n) and their right classes (T,), where no reward is flipped."""
+        x = chance.random((count, self.inputs))
+        return x, self.label(x)
 
 
 def multiplexer(address: int, thresholds: tuple[float, ...] = (0.5,)) -> Classes:
@@ -60,4 +73,4 @@ def checkerboard(divisions: int, inputs: int = 2) -> Classes:
         fields = np.floor(x * divisions).astype(np.int64)
         return np.asarray(fields.sum(axis=1) % 2)
 
-    return Classes(f"checkerboard_{divisions}", inputs, 2, label)
+    return Classes("checkerboard_" + "x".join([str(divisions)] * inputs), inputs, 2, label)
