@@ -1,6 +1,7 @@
 """ALCSR as one uses it: cycle by cycle, or over many problems at once."""
 
-from typing import Any, Final, final
+from dataclasses import dataclass
+from typing import Any, Final, Self, final
 
 import numpy as np
 import numpy.typing as npt
@@ -8,17 +9,31 @@ import numpy.typing as npt
 from lcs.alcsr.config import Config
 from lcs.alcsr.kernels import cycle
 from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
-from lcs.alcsr.population import Population, empty
+from lcs.alcsr.population import Population, all_arrays, empty, restored
 from lcs.arrays import Array, Integers
 from lcs.course import Course
 from lcs.faults import LearnerError
 from lcs.rules.table import RuleTable
+from lcs.state import State, array_named, chance_from, from_plain, plain_of, plain_of_chance
 
 REWARD_RANGE: Final = 2000.0
 """From -1000 to 1000 (4.3.2)."""
 
 TINY: Final = 1e-12
 """The weight of those with no strength: they vote where nobody else does."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is saved of a learner beside its arrays."""
+
+    actions: int
+    inputs: int
+    reward_range: float
+    config: Config
+    chance: dict[str, Any]
+    is_trying: bool
 
 
 @final
@@ -165,6 +180,36 @@ class ALCSR:
             low=land.low.copy(),
             high=land.high.copy(),
         )
+
+    def state(self) -> State:
+        """All that it is, now; between an action and its reward too."""
+        kept = Kept(
+            actions=self.population.rules.living.size,
+            inputs=self.population.land.low.size,
+            reward_range=self.population.numbers.reward_range,
+            config=self.config,
+            chance=plain_of_chance(self.chance),
+            is_trying=self.is_trying,
+        )
+        arrays = dict(all_arrays(self.population))
+        if self._waits_with is not None:
+            arrays["waits_with"] = self._waits_with.copy()
+        return State("ALCSR", plain_of(kept), arrays)
+
+    @classmethod
+    def from_state(cls, state: State) -> Self:
+        """The learner that had this state: it goes on bit for bit as that one would.
+
+        Raises:
+            LearnerError: the state is of another version, or damaged.
+        """
+        kept = from_plain(Kept, state.plain, "values")
+        learner = cls(kept.actions, kept.inputs, kept.config, reward_range=kept.reward_range)
+        learner.population = restored(learner.population, state.arrays)
+        learner.chance = chance_from(kept.chance)
+        if kept.is_trying:
+            learner._waits_with = learner._checked(array_named("waits_with", state.arrays))
+        return learner
 
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population

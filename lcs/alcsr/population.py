@@ -1,12 +1,14 @@
 """The rules and corpses of one learner, and the room for them, which grows as need be."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Final, final
 
 import numpy as np
 
 from lcs.alcsr.config import Config
 from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
+from lcs.faults import LearnerError
+from lcs.state import Arrays, arrays_of, filled
 
 ROOM: Final = 1024
 """For rules and for corpses of each action, at first."""
@@ -33,6 +35,35 @@ class Population:
                 self.corpses.buried, *(_longer(each) for each in self.corpses[1:])
             )
         self.scratch = _wider(self.scratch, self.rules.prediction.shape[1])
+
+
+def all_arrays(population: Population) -> Arrays:
+    """Copies of all arrays by name; the constants are no part of them."""
+    parts = {name: getattr(population, name) for name in _parts(population)}
+    return {key: each for name in parts for key, each in arrays_of(name, parts[name]).items()}
+
+
+def restored(population: Population, arrays: Arrays) -> Population:
+    """What `all_arrays` were of; the population has as much room or less, and the same constants.
+
+    Raises:
+        LearnerError: an array is missing, or of another type or shape.
+    """
+    whole = replace(
+        population,
+        **{name: filled(name, getattr(population, name), arrays) for name in _parts(population)},
+    )
+    rules, corpses, scratch = whole.rules, whole.corpses, whole.scratch
+    counts = ((rules.living, rules.prediction), (corpses.buried, corpses.prediction))
+    if any(np.any((count < 0) | (count > room.shape[1])) for count, room in counts):
+        raise LearnerError("there are more rules or corpses than room for them")
+    if scratch.order.size != rules.prediction.shape[1]:
+        raise LearnerError("'rules' and 'scratch' have not the same room")
+    return whole
+
+
+def _parts(population: Population) -> list[str]:
+    return [each.name for each in fields(population) if each.name != "numbers"]
 
 
 def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Population:
