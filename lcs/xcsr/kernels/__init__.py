@@ -1,0 +1,1 @@
+"""XCSR's cycle over arrays of all classifiers, compiled."""
