@@ -84,8 +84,9 @@ def _latest(grid: Array, places: Integers, values: Array | Integers) -> Array:
 def mark(
     axes: Axes, stated: Sequence[Stated], palette: Palette, heights: Sequence[float] = ()
 ) -> None:
-    """What others state, with its text at such heights (shares of the panel), or without."""
-    for k, each in enumerate(stated):
+    """What others state of the problems shown; with its text at heights (shares of the panel)."""
+    shown = [each for each in stated if each.tries[0] <= axes.get_xlim()[1]]
+    for k, each in enumerate(shown):
         (left, right), (low, high) = each.tries, each.values
         if left == right and low == high:
             look: Look = {"markerfacecolor": "none", "markeredgecolor": palette.ink}
