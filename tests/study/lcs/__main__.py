@@ -9,10 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from tests.study.lcs import experiments, readings
+from tests.study.lcs import experiments, pictures, readings
 
 STUDIES: Final[dict[str, Callable[[Path, int], None]]] = {
     "experiments": experiments.tell,
+    "figures": pictures.draw,
     "readings": readings.tell,
     "combinations": readings.tell_combinations,
 }

@@ -103,6 +103,7 @@ def _cells(cycles: int, runs: Sequence[Measured]) -> list[str]:
     at = [sum(run.of_1000[k] for run in runs) / count for k in SHOWN]
     least, median, most_ = spread([run.final for run in runs])
     final = f"{median:,.0f}" if count == 1 else f"{least:,.0f}, {median:,.0f}, {most_:,.0f}"
-    peak, peak_at = (sum(each) / count for each in zip(*((r.peak, r.peak_at) for r in runs), strict=True))
+    peak = sum(run.peak for run in runs) / count
+    peak_at = sum(run.peak_at for run in runs) / count
     last = sum(run.last for run in runs) / count
     return [*map(percent, at), f"{last:,.0f}", f"{peak:,.0f} @ {peak_at / 1000:,.0f}k", final]
