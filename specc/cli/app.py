@@ -17,6 +17,7 @@ from specc.cli.compile import compile_
 from specc.cli.console import print_annotations, print_json, say, show_diagnostics
 from specc.cli.fit import fit
 from specc.cli.init import init
+from specc.cli.learn import learn
 from specc.cli.portrait import portrait
 from specc.cli.replay import replay
 from specc.cli.schema import schema
@@ -68,6 +69,7 @@ app.command("wiring")(wiring)
 app.command("compare")(compare)
 app.command("verify")(verify)
 app.command("fit")(fit)
+app.command("learn")(learn)
 app.command("schema")(schema)
 
 

@@ -9,6 +9,8 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Final
 
@@ -38,6 +40,30 @@ def hear_at_once() -> None:
     signal.signal(signal.SIGINT, notice)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     threading.Thread(target=_watch, args=(reader, noticed), daemon=True).start()
+
+
+@contextmanager
+def postponed() -> Iterator[threading.Event]:
+    """Within it Ctrl-C interrupts nothing, but sets the event: what is begun is ended first.
+
+    It still ends the process where the main thread does not look for `PATIENCE`.
+    """
+    wanted = threading.Event()
+    before = signal.getsignal(signal.SIGINT)
+    if not callable(before):
+        yield wanted
+        return
+
+    def note(number: int, frame: FrameType | None) -> None:
+        wanted.set()
+        with suppress(KeyboardInterrupt):
+            before(number, frame)
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield wanted
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def deaf() -> None:

@@ -24,6 +24,18 @@ def warmed(spec: Path | None) -> None:
         warm(progress)
 
 
+def warmed_learner(name: str) -> None:
+    """Compile the kernels of a learner now if this installation has not done so yet."""
+    from specc.learning.warming import is_warm, warm
+
+    if is_warm(name):
+        return
+    say(f"first use: compiling the kernels of {name}, about a minute, once", "bold")
+    with progress_bar("kernels") as progress:
+        progress(name, 0, 1)
+        warm(name)
+
+
 def _refuse_mistakes(spec: Path) -> None:
     from compiler.check import check
     from spec_schema.diagnostics import Severity, SpecError

@@ -1,0 +1,1 @@
+"""Experiments of learners: run, interrupted, resumed, summed up and written."""

@@ -1,0 +1,115 @@
+"""What is run: a problem, a learner, how long, and from which seeds; and what its names mean."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final, final
+
+from lcs.faults import LearnerError
+from lcs.problems.problem import Problem
+from lcs.problems.registry import PROBLEMS, Offer, Value, made, table_offer
+from spec_schema.diagnostics import Diagnostic, SpecError
+from spec_schema.suggest import did_you_mean, there_are
+from specc.faults import fault
+from specc.learning.learners import LEARNERS
+from specc.learning.settings import choices, configured, problem, value_of
+
+TABLE: Final = ".csv"
+VERSION: Final = 1
+"""Of the record of an experiment."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """Everything that the figures follow from.
+
+    problem: a name of `PROBLEMS`, or a CSV file. given: what it is made with, as it was written.
+    learner: a name of `LEARNERS`. settings: of its constants, as they were written.
+    cycles: of each run, tests included. seeds: one run from each. tests: fresh problems at the end.
+    """
+
+    problem: str
+    given: Mapping[str, str]
+    learner: str
+    settings: Mapping[str, str]
+    cycles: int
+    seeds: tuple[int, ...]
+    tests: int
+
+
+def record_of(experiment: Experiment) -> dict[str, Any]:
+    """As JSON has it."""
+    return {"version": VERSION, **asdict(experiment), "seeds": list(experiment.seeds)}
+
+
+def experiment_of(record: Mapping[str, Any]) -> Experiment:
+    """The experiment of a record.
+
+    Raises:
+        KeyError, TypeError, ValueError: it is no record of this version.
+    """
+    values = dict(record)
+    if values.pop("version") != VERSION:
+        raise ValueError("it is of another version")
+    return Experiment(**{**values, "seeds": tuple(int(seed) for seed in values["seeds"])})
+
+
+def problem_of(experiment: Experiment) -> Problem:
+    """The problem that is learnt.
+
+    Raises:
+        SpecError: it is unknown (V401), a name or value of it is wrong (V341, V342), or a table or
+            what it is made with does not fit (V402).
+        OSError: the file of a table can't be read.
+    """
+    offer = offer_of(experiment.problem)
+    try:
+        return made(offer, _values(offer, experiment.given, experiment.problem))
+    except LearnerError as error:
+        raise fault("V402", experiment.problem, str(error)) from error
+
+
+def config_of(experiment: Experiment) -> Any:
+    """The config of the learner.
+
+    Raises:
+        SpecError: a constant or reading is unknown (V341), or can't have that value (V342).
+    """
+    known = LEARNERS[experiment.learner]
+    return configured(known.config, experiment.settings, experiment.learner)
+
+
+def offer_of(name: str) -> Offer:
+    """The problem of a name, or the table of a file.
+
+    Raises:
+        SpecError: nothing is named so (V401).
+    """
+    if name in PROBLEMS:
+        return PROBLEMS[name]
+    if Path(name).suffix.lower() == TABLE:
+        return table_offer(Path(name))
+    remedy = did_you_mean(name, list(PROBLEMS))
+    remedy = remedy or "`specc learn --list` lists them; a table is named by its file, rows.csv"
+    raise fault("V401", name, f"no problem is named '{name}'", remedy)
+
+
+def _values(offer: Offer, given: Mapping[str, str], named: str) -> dict[str, Value]:
+    """What the problem is made with, as values."""
+    values: dict[str, Any] = {}
+    problems: list[Diagnostic] = []
+    for name, text in given.items():
+        if name not in offer.defaults:
+            remedy = did_you_mean(name, list(offer.defaults)) or there_are(list(offer.defaults))
+            message = f"{named} is not made with '{name}'"
+            problems.append(problem("V341", f"{name}={text}", message, remedy))
+            continue
+        like = offer.defaults[name]
+        try:
+            values[name] = value_of(text, like)
+        except ValueError as error:
+            problems.append(problem("V342", f"{name}={text}", str(error), choices(like)))
+    if problems:
+        raise SpecError(problems)
+    return values

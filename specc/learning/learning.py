@@ -1,0 +1,102 @@
+"""An experiment from its beginning, or from where it was stopped, to its end."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, final
+
+from lcs.faults import LearnerError
+from lcs.problems.problem import Problem
+from specc.faults import fault
+from specc.learning import folder as folders
+from specc.learning.experiment import Experiment
+from specc.learning.resuming import keep, taken_up
+from specc.learning.running import Run, begun, go_on, standing
+from specc.learning.summary import Summary, summed_up
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Learnt:
+    """What came of an experiment: its runs, in the order of its seeds, and their figures."""
+
+    experiment: Experiment
+    problem: Problem
+    runs: tuple[Run, ...]
+    summaries: tuple[Summary, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """An experiment that was stopped: the run that it stopped in, and how far that was."""
+
+    experiment: Experiment
+    seed: int
+    done: int
+
+
+def learn(
+    experiment: Experiment,
+    problem: Problem,
+    config: Any,
+    folder: Path | None,
+    *,
+    tell: Callable[[str, int, int], None],
+    shall_stop: Callable[[], bool],
+) -> Learnt | Stopped:
+    """Run an experiment, or what is left of it.
+
+    Args:
+        experiment: what is run. problem, config: what its names mean.
+        folder: where runs are kept, and taken up again; None for nowhere.
+        tell: is told what is done, how much of it, and of how much.
+        shall_stop: whether to stop now; what was learnt is kept first.
+
+    Raises:
+        SpecError: the experiment can't be run, or a checkpoint can't be read or written.
+        OSError: a checkpoint can't be read.
+    """
+    runs: list[Run] = []
+    for seed in experiment.seeds:
+        run = _taken_up_or_begun(experiment, problem, config, seed, folder)
+        before = experiment.cycles * len(runs)
+
+        def advanced(run: Run, before: int = before) -> None:
+            named = f"seed {run.seed}: " * (len(experiment.seeds) > 1)
+            tell(
+                named + standing(run), before + run.done, experiment.cycles * len(experiment.seeds)
+            )
+
+        go_on(
+            run,
+            problem,
+            experiment.cycles,
+            tell=advanced,
+            keep=lambda run: _keep(run, folder),
+            shall_stop=shall_stop,
+        )
+        if run.done < experiment.cycles:
+            return Stopped(experiment, seed, run.done)
+        runs.append(run)
+    summaries: list[Summary] = []
+    for run in runs:
+        tell("testing", len(summaries), len(runs))
+        summaries.append(summed_up(run, problem, experiment.tests, None))
+    return Learnt(experiment, problem, tuple(runs), tuple(summaries))
+
+
+def _taken_up_or_begun(
+    experiment: Experiment, problem: Problem, config: Any, seed: int, folder: Path | None
+) -> Run:
+    if folder is not None and folders.checkpoint(folder, seed).exists():
+        return taken_up(folders.checkpoint(folder, seed))
+    try:
+        return begun(experiment, problem, config, seed)
+    except LearnerError as error:
+        raise fault("V402", experiment.problem, str(error)) from error
+
+
+def _keep(run: Run, folder: Path | None) -> None:
+    if folder is not None:
+        keep(run, folders.checkpoint(folder, run.seed))

@@ -1,0 +1,75 @@
+"""Checkpoints: all of a run in one file, which is whole or as it was before.
+
+What is kept is what can't be told from the experiment: the learner with its own chance, its course,
+and how long it took. A run that goes on from it gives the same bits as one that never stopped.
+"""
+
+import io
+import zipfile
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from lcs.course import Course
+from lcs.faults import LearnerError
+from lcs.saving import KINDS, as_bytes, from_bytes
+from specc.faults import fault
+from specc.files import write_atomically
+from specc.learning.running import Run
+
+NARROW: Final = {"kind": np.int8, "action": np.int32, "rules": np.int32}
+"""How columns of a course are kept."""
+
+DAMAGED: Final = "delete it, and its run begins anew"
+
+
+def keep(run: Run, path: Path) -> None:
+    """Write the run; what was kept before is replaced in one step.
+
+    Raises:
+        SpecError: it can't be written (V347).
+    """
+    course, right = run.so_far()
+    columns = {each.name: getattr(course, each.name) for each in fields(Course)}
+    kept: dict[str, Any] = {
+        "learner": np.frombuffer(as_bytes(run.learner.state()), np.uint8),
+        "right": right.astype(np.int32),
+        "seed": np.array(run.seed),
+        "done": np.array(run.done),
+        "seconds": np.array(run.seconds),
+        **{name: each.astype(NARROW.get(name, each.dtype)) for name, each in columns.items()},
+    }
+    content = io.BytesIO()
+    np.savez(content, **kept)
+    write_atomically(path, content.getvalue())
+
+
+def taken_up(path: Path) -> Run:
+    """The run that was kept there.
+
+    Raises:
+        SpecError: the file is damaged, or of another version (V404).
+        OSError: it can't be read.
+    """
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as kept:
+            state = from_bytes(kept["learner"].tobytes())
+            columns = {each.name: kept[each.name] for each in fields(Course)}
+            course = Course(
+                **{
+                    name: values.astype(np.float64 if name == "error" else np.int64)
+                    for name, values in columns.items()
+                }
+            )
+            return Run(
+                int(kept["seed"]),
+                KINDS[state.kind](state),
+                [course],
+                [kept["right"].astype(np.int64)],
+                int(kept["done"]),
+                float(kept["seconds"]),
+            )
+    except (LearnerError, KeyError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise fault("V404", path, f"this checkpoint can't be read: {error}", DAMAGED) from error

@@ -1,0 +1,95 @@
+"""All files that an experiment leaves in its folder."""
+
+import csv
+import io
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from lcs.course import Course
+from lcs.curves import curve_of, over_last
+from lcs.saving import as_bytes
+from specc.figures.style_names import Style
+from specc.files import json_bytes, write_atomically
+from specc.learning.folder import run_folder
+from specc.learning.learning import Learnt
+from specc.learning.pictures import pictures
+from specc.learning.running import WINDOW, Run
+from specc.texts.learning import learning_record, learning_text
+
+COLUMNS: Final = (
+    "cycles",
+    "tried",
+    "right",
+    "error",
+    "performance",
+    "system_error",
+    "rules",
+    "births",
+    "deaths",
+)
+
+
+def write_all(
+    learnt: Learnt, folder: Path, style: Style, tell: Callable[[str, int, int], None]
+) -> list[str]:
+    """Write curves, rules, figures and the summary; their names in the folder.
+
+    Raises:
+        SpecError: one can't be written (V347).
+    """
+    written: list[str] = []
+    count = 2 + 3 * len(learnt.runs) + 2
+    for path, content in _files(learnt, folder, style):
+        name = path.relative_to(folder).as_posix()
+        tell(f"writing {name}", len(written), count)
+        write_atomically(path, content)
+        written.append(name)
+    return written
+
+
+def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, bytes]]:
+    """Each file and what it holds, the summary first: who interrupts the figures keeps it."""
+    yield folder / "summary.txt", f"{learning_text(learnt)}\n".encode()
+    yield folder / "summary.json", json_bytes(learning_record(learnt))
+    for run in learnt.runs:
+        inside = run_folder(folder, run.seed)
+        yield inside / "learner.npz", as_bytes(run.learner.state())
+        yield inside / "curve.csv", _csv(run)
+        yield inside / "course.npz", _npz(run)
+    for name, content in pictures(learnt, style):
+        yield folder / name, content
+
+
+def _csv(run: Run) -> bytes:
+    """What each test showed, a row for each; performance and system error are of the last 50."""
+    course, right = run.so_far()
+    curve, at = curve_of(course, right), np.flatnonzero(course.is_test)
+    columns = (
+        at + 1,
+        curve.tries,
+        curve.right.astype(np.int64),
+        curve.error.round(6),
+        over_last(curve.right, WINDOW).round(6),
+        over_last(curve.error, WINDOW).round(6),
+        course.rules[at],
+        course.births[at],
+        course.deaths[at],
+    )
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows(zip(*(column.tolist() for column in columns), strict=True))
+    return text.getvalue().encode()
+
+
+def _npz(run: Run) -> bytes:
+    """Every cycle of a run: the course, and the right actions."""
+    course, right = run.so_far()
+    content = io.BytesIO()
+    columns = {each.name: getattr(course, each.name) for each in fields(Course)}
+    np.savez_compressed(content, right=right, **columns)
+    return content.getvalue()

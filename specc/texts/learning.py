@@ -1,0 +1,80 @@
+"""What came of an experiment of learners, as text for people and as a record for programs."""
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from specc.learning.experiment import record_of
+from specc.learning.learning import Learnt
+from specc.learning.summary import Summary
+from verifier.report.layout import INDENT, section, table
+
+
+def learning_text(learnt: Learnt) -> str:
+    """What was learnt in each run, and what the figures mean."""
+    experiment = learnt.experiment
+    runs = "a run" if len(learnt.runs) == 1 else f"{len(learnt.runs)} runs"
+    head = f"{learnt.problem.name} by {experiment.learner}: {runs} of {experiment.cycles:,} cycles"
+    return "\n\n".join([head, *(_run_text(each) for each in learnt.summaries), *_mean_text(learnt)])
+
+
+def _run_text(one: Summary) -> str:
+    rows = [
+        ("accuracy", f"{_percent(one.accuracy)} of {one.fresh:,} fresh problems{_unknown(one)}"),
+        ("performance", _performance(one)),
+        ("rules", _rules(one)),
+        ("births and deaths", f"{one.births:,} and {one.deaths:,}"),
+        ("learnt from", f"{one.tried:,} of {one.cycles:,} cycles; the others tested"),
+        ("speed", f"{one.per_second:,.0f} problems a second"),
+    ]
+    return section(f"seed {one.seed}", [table(rows, INDENT)])
+
+
+def _unknown(one: Summary) -> str:
+    if not one.uncovered:
+        return ""
+    return f"; {_percent(one.uncovered)} count as wrong, since an action has no rule there"
+
+
+def _performance(one: Summary) -> str:
+    if one.performance is None or one.error is None:
+        return "no cycle was a test"
+    last = f"the last {one.tests:,} tests" if one.tests > 1 else "the only test"
+    told = f"{_percent(one.performance)} of {last}, system error {_percent(one.error)}"
+    if one.right_of_last is not None:
+        told += f"; {one.right_of_last:,} of the last 10,000"
+    return told
+
+
+def _rules(one: Summary) -> str:
+    told = f"{one.rules:,} at the end, {one.most_rules:,} at most"
+    told += f" (when {one.most_rules_at:,} cycles were learnt from)"
+    if one.thinned is not None:
+        told += f"; {one.thinned.rules:,} after compaction, {_percent(one.thinned.accuracy)} right"
+    return told
+
+
+def _mean_text(learnt: Learnt) -> list[str]:
+    """The mean over several runs."""
+    if len(learnt.summaries) < 2:
+        return []
+    accuracy = [100.0 * each.accuracy for each in learnt.summaries]
+    rules = [each.rules for each in learnt.summaries]
+    rows = [
+        ("accuracy", f"{np.mean(accuracy):.2f} % ({min(accuracy):.2f} to {max(accuracy):.2f})"),
+        ("rules", f"{np.mean(rules):,.0f} ({min(rules):,} to {max(rules):,})"),
+    ]
+    return [section("mean of all runs", [table(rows, INDENT)])]
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2f} %"
+
+
+def learning_record(learnt: Learnt) -> dict[str, Any]:
+    """The same for programs; only `seconds` and `per_second` differ between two equal runs."""
+    return {
+        "experiment": record_of(learnt.experiment),
+        "runs": [{**asdict(each), "per_second": each.per_second} for each in learnt.summaries],
+    }

@@ -1,0 +1,68 @@
+"""What there is to learn and who learns it, as text for people and as a record for programs."""
+
+from typing import Any
+
+from lcs.problems.registry import COLUMNS, MEANINGS, PROBLEMS, SPLIT
+from specc.learning.learners import LEARNERS
+from specc.learning.settings import choices, listed, shown
+from verifier.report.layout import INDENT, section, table
+
+TABLE = "FILE.csv"
+
+
+def listing_text(learner: str) -> str:
+    """Problems, what they are made with, learners, and all that can be set of one of them."""
+    problems = [(name, offer.about) for name, offer in PROBLEMS.items()]
+    problems.append((TABLE, "the rows of a table; its first line names the columns"))
+    learners = [(name, known.about) for name, known in LEARNERS.items()]
+    constants = [
+        (name, shown(value), choices(value).removeprefix("write ") if not _is_number(value) else "")
+        for name, value in listed(LEARNERS[learner].config)
+    ]
+    return "\n\n".join(
+        [
+            section("problems", [table(problems, INDENT)]),
+            section("made with (--with NAME=VALUE)", [table(_made_with(), INDENT)]),
+            section("learners (--learner NAME)", [table(learners, INDENT)]),
+            section(f"constants of {learner} (--set NAME=VALUE)", [table(constants, INDENT)]),
+        ]
+    )
+
+
+def listing_record(learner: str) -> dict[str, Any]:
+    """The same for programs."""
+    return {
+        "problems": {
+            name: {
+                "about": offer.about,
+                "with": {key: shown(value) for key, value in offer.defaults.items()},
+            }
+            for name, offer in PROBLEMS.items()
+        },
+        "learners": {name: known.about for name, known in LEARNERS.items()},
+        "constants": {name: shown(value) for name, value in listed(LEARNERS[learner].config)},
+    }
+
+
+def _made_with() -> list[tuple[str, str, str]]:
+    """Each name, what it means, and whom it belongs to."""
+    owners: dict[str, list[str]] = {name: [] for name in MEANINGS}
+    for name, offer in PROBLEMS.items():
+        for key in offer.defaults:
+            owners[key].append(name)
+    for key in {**COLUMNS, **SPLIT}:
+        owners[key].append(TABLE)
+    return [(name, meaning, _families(owners[name])) for name, meaning in MEANINGS.items()]
+
+
+def _families(names: list[str]) -> str:
+    """Problems by the word that their names begin with.
+
+    >>> _families(["multiplexer_6", "multiplexer_11", "scitos_2"])
+    'multiplexer, scitos'
+    """
+    return ", ".join(dict.fromkeys(name.partition("_")[0] for name in names))
+
+
+def _is_number(value: object) -> bool:
+    return type(value) in {int, float}
