@@ -47,9 +47,10 @@ def draw(folder: Path, at_once: int) -> None:
 def pictures(which: int, runs: list[Run]) -> list[tuple[str, Picture]]:
     """Of one experiment: learning, and population."""
     courses, curves = [run.course for run in runs], [run.curve for run in runs]
+    cycles = len(courses[0].kind)
     about = [
-        f"Real 6-multiplexer, {THRESHOLDS[which]}; P(explore) 0.9. Mean of {len(runs)} runs of "
-        f"{len(courses[0].kind):,} cycles, in the band from the lowest to the highest run."
+        f"Real 6-multiplexer, {THRESHOLDS[which]}; P(explore) 0.9.",
+        f"Mean of {len(runs)} runs of {cycles:,} cycles, in the band from lowest to highest.",
     ]
     end = min(float(tries_of(course)[-1]) for course in courses)
     begin = min(float(curve.tries[-LAST:][0]) for curve in curves)
