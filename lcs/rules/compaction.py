@@ -1,0 +1,183 @@
+"""A small set of rules that says what a large one said, on the examples given.
+
+A rule set is a two-level cover with a don't-care set, so the steps are those of Espresso (Brayton
+et al. 1984): each rule is widened against the examples of other levels, until no interval can take
+in more; then the fewest boxes are chosen that hold what was held. A box that can't be widened in
+any input has no hull with a neighbor that is free of wrong examples, so merging is part of it.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from lcs.arrays import Array, Booleans, Integers
+from lcs.faults import LearnerError
+from lcs.rules.candidates import Candidates, Examples, counts, grown
+from lcs.rules.choosing import chosen, snap
+from lcs.rules.deciding import Decisions, boxes_hold, columns_of, decide
+from lcs.rules.experience import Accuracy, Experience, accuracy, nearest_level
+from lcs.rules.table import RuleTable
+
+LAST_RESORT: Final = 1e-6
+"""By what the vote is weighed of rules that were kept for their cover only."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Compacted:
+    """The small set, and what it cost.
+
+    table: its counts of right and wrong are of the examples given, and weight is the odds of being
+    right, (right + 1) / (wrong + 1). rules_before: how many there were; idle: how many of those
+    held on no example. before, after: on the examples.
+    """
+
+    table: RuleTable
+    rules_before: int
+    idle: int
+    before: Accuracy
+    after: Accuracy
+
+    def __str__(self) -> str:
+        return (
+            f"{self.rules_before} rules, of which {self.idle} held on no example, became "
+            f"{len(self.table)}. "
+            f"Right reward expected: {self.before.expected:.2%} before, {self.after.expected:.2%} "
+            f"after; no rule for some action: {self.before.uncovered:.2%} before, "
+            f"{self.after.uncovered:.2%} after."
+        )
+
+
+def compact(
+    table: RuleTable, seen: Experience, *, noise: float = 0.0, few_digits: bool = True
+) -> Compacted:
+    """Few rules that hold wherever the table's held on the examples, and are as right there.
+
+    Without noise no example that was rightly expected is wrong after it, and what was expected
+    wrongly is put right. With noise, the share of wrong rewards, wrong examples are passed over.
+
+    Args:
+        table: the rules; predictions are read as the nearest reward level.
+        seen: examples. An action's reward that is not known asks for cover only.
+        noise: below 0.5.
+        few_digits: bounds are the shortest numbers that keep each example on its side, else the
+            middle between the examples.
+
+    Raises:
+        LearnerError: the rewards are no levels, noise is out of range, or inputs are of another
+            size than the rules'.
+    """
+    if not 0.0 <= noise < 0.5:
+        raise LearnerError(f"noise is a share of rewards, from 0 to below 0.5; got {noise}")
+    if seen.rewards.shape[1] != table.actions:
+        raise LearnerError(f"{table.actions} actions need as many columns of rewards")
+    levels, said = seen.levels, decide(table, seen.inputs)
+    parts = []
+    for action in range(table.actions):
+        rules = rules_of(table, table.action == action)
+        examples, to_cover = _examples(table, seen, said, levels, action)
+        rule_level = nearest_level(rules.prediction, levels)
+        candidates = grown(rules, rule_level, examples, to_cover, noise)
+        parts.append(
+            _chosen(candidates, examples, table, action, levels, noise, few_digits=few_digits)
+        )
+    small = joined(parts)
+    idle = int((~boxes_hold(table.lower, table.upper, table.high, seen.inputs).any(axis=1)).sum())
+    return Compacted(small, len(table), idle, accuracy(table, seen), accuracy(small, seen))
+
+
+def rules_of(table: RuleTable, those: Booleans | Integers) -> RuleTable:
+    """Some rules of a table."""
+    return RuleTable(
+        actions=table.actions,
+        action=table.action[those],
+        lower=table.lower[those],
+        upper=table.upper[those],
+        prediction=table.prediction[those],
+        weight=table.weight[those],
+        right=table.right[those],
+        wrong=table.wrong[those],
+        low=table.low,
+        high=table.high,
+    )
+
+
+def joined(tables: list[RuleTable]) -> RuleTable:
+    """The rules of several tables over the same inputs."""
+    columns = ("action", "lower", "upper", "prediction", "weight", "right", "wrong")
+    first = tables[0]
+    return RuleTable(
+        actions=first.actions,
+        low=first.low,
+        high=first.high,
+        **{name: np.concatenate([getattr(each, name) for each in tables]) for name in columns},
+    )
+
+
+def _examples(
+    table: RuleTable, seen: Experience, said: Decisions, levels: Array, action: int
+) -> tuple[Examples, Booleans]:
+    """The examples of an action, equal inputs as one, and which have to be covered."""
+    told = nearest_level(seen.rewards[:, action], levels)
+    believed = nearest_level(said.expected[:, action], levels)
+    x, level, is_told, count = _equal_as_one(seen.inputs, told, believed)
+    covered = decide(table, x).voters[:, action] > 0
+    inside = ((x >= table.low) & (x <= table.high)).all(axis=1) & (level >= 0)
+    x, level, is_told, count = x[inside], level[inside], is_told[inside], count[inside]
+    order = np.ascontiguousarray(np.argsort(x, axis=0, kind="stable").T)
+    examples = Examples(x, columns_of(x), level, is_told, count, order, table.low, table.high)
+    return examples, covered[inside]
+
+
+def _equal_as_one(
+    inputs: Array, told: Integers, believed: Integers
+) -> tuple[Array, Integers, Booleans, Integers]:
+    """Different inputs, the level of most rewards of each, if any is known, and how many.
+
+    Where two levels are as frequent, the one that is believed; where no reward is known, too.
+    """
+    x, place = np.unique(inputs, axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    votes = np.zeros((len(x), int(max(told.max(), believed.max())) + 1))
+    known = told >= 0
+    np.add.at(votes, (place[known], told[known]), 1.0)
+    count = np.maximum(votes.max(axis=1), 1.0).astype(np.int64)
+    has_told = votes.any(axis=1)
+    sure = believed >= 0
+    votes[place[sure], believed[sure]] += 0.5
+    level: Integers = np.where(votes.any(axis=1), votes.argmax(axis=1), -1)
+    return np.ascontiguousarray(x), level, np.asarray(has_told, np.bool_), count
+
+
+def _chosen(
+    found: Candidates,
+    seen: Examples,
+    table: RuleTable,
+    action: int,
+    levels: Array,
+    noise: float,
+    *,
+    few_digits: bool,
+) -> RuleTable:
+    """The fewest candidates of each level that hold what its candidates have to."""
+    kept = chosen(found, seen, noise)
+    if few_digits:
+        snap(found, kept, seen)
+    lower, upper = found.boxes(kept)
+    level = np.array(found.level, np.int64)[kept]
+    is_rule = np.array(found.is_rule, np.bool_)[kept]
+    right, wrong = counts(lower, upper, level, seen)
+    odds = (right + 1.0) / (wrong + 1.0)
+    return RuleTable(
+        actions=table.actions,
+        action=np.full(len(kept), action),
+        lower=lower,
+        upper=upper,
+        prediction=levels[level],
+        weight=np.where(is_rule, LAST_RESORT * odds, odds),
+        right=right,
+        wrong=wrong,
+        low=table.low,
+        high=table.high,
+    )
