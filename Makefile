@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-principles bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-principles study-lcs bench bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -75,6 +75,11 @@ study-paradigms: .venv/ready ## three tasks by three paradigms of the same behav
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms light --first 1120 --worlds 50
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms patrol --first 1070 --worlds 50
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.paradigms tidy --first 1040 --worlds 50
+
+study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of its readings
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs experiments
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs figures
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs readings
 
 bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
