@@ -10,7 +10,8 @@ class Input:
     """An input: its name, its unit ("" for none), and its range or its values.
 
     low, high: the declared range; None where it is what comes. values: of a discrete input, which
-    learners see as the index into them.
+    learners see as the index into them. is_ordered: whether the order of the values means
+    something; if not, `lcs.encoding` makes an input of 0 and 1 of each value.
     """
 
     name: str
@@ -18,3 +19,4 @@ class Input:
     low: float | None = None
     high: float | None = None
     values: tuple[str, ...] = ()
+    is_ordered: bool = False

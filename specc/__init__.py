@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from compiler.check import check as check
     from compiler.compile import Compiled as Compiled
     from compiler.dump import dump as dump
+    from lcs.estimator import ALCSRClassifier as ALCSRClassifier
     from runtime.program import Program as Program
     from runtime.rollout import Rollout as Rollout
     from spec_schema.diagnostics import Diagnostic as Diagnostic
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 HOMES = {
+    "ALCSRClassifier": "lcs.estimator",
     "Compiled": "compiler.compile",
     "Program": "runtime.program",
     "Rollout": "runtime.rollout",
@@ -94,6 +96,9 @@ HOMES = {
 }
 """Where each public name is at home."""
 
+EXTRAS = {"sklearn": "scikit-learn"}
+"""What an extra of the same name installs."""
+
 __all__ = [*HOMES]  # noqa: PLE0604  the names are text
 
 
@@ -107,6 +112,15 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'specc' has no attribute '{name}'")
     import importlib  # noqa: PLC0415  only when something is used
 
-    value: object = getattr(importlib.import_module(HOMES[name]), name)
+    try:
+        home = importlib.import_module(HOMES[name])
+    except ModuleNotFoundError as error:
+        extra = (error.name or "").partition(".")[0]
+        if extra not in EXTRAS:
+            raise
+        raise ImportError(
+            f"specc.{name} needs {EXTRAS[extra]}: pip install 'specc[{extra}]'"
+        ) from error
+    value: object = getattr(home, name)
     globals()[name] = value
     return value
