@@ -36,6 +36,11 @@ class Problem(Protocol):
         """What each class is called."""
         ...
 
+    @property
+    def flipped(self) -> float:
+        """The chance that a reward is the other one."""
+        ...
+
     def drawn(self, count: int, chance: np.random.Generator) -> tuple[Array, Array, Integers]:
         """So many inputs to learn from (T, n), rewards of all classes (T, A), right ones (T,)."""
         ...

@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Final
@@ -50,18 +50,37 @@ def postponed() -> Iterator[threading.Event]:
     """
     wanted = threading.Event()
     before = signal.getsignal(signal.SIGINT)
-    if not callable(before):
-        yield wanted
-        return
 
     def note(number: int, frame: FrameType | None) -> None:
         wanted.set()
-        with suppress(KeyboardInterrupt):
-            before(number, frame)
+        if callable(before):
+            with suppress(KeyboardInterrupt):
+                before(number, frame)
 
-    signal.signal(signal.SIGINT, note)
-    try:
+    with _heard_by(note):
         yield wanted
+
+
+@contextmanager
+def at_once() -> Iterator[None]:
+    """Within it Ctrl-C ends the process there and then.
+
+    What compiles calls back into Python, where an interruption would get lost.
+    """
+    with _heard_by(lambda _number, _frame: _end()):
+        yield
+
+
+@contextmanager
+def _heard_by(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Within it a handler hears Ctrl-C, where anybody does."""
+    before = signal.getsignal(signal.SIGINT)
+    if not callable(before):
+        yield
+        return
+    signal.signal(signal.SIGINT, handler)
+    try:
+        yield
     finally:
         signal.signal(signal.SIGINT, before)
 
@@ -76,6 +95,11 @@ def _watch(reader: int, noticed: threading.Event) -> None:
     while True:
         numbers = os.read(reader, 1)
         if numbers == bytes([signal.SIGINT]) and not noticed.wait(PATIENCE):
-            os.write(2, (SHOW_CURSOR * sys.stderr.isatty() + INTERRUPTED).encode())
-            os._exit(130)
+            _end()
         noticed.clear()
+
+
+def _end() -> None:
+    """The end of the process, with a sentence."""
+    os.write(2, (SHOW_CURSOR * sys.stderr.isatty() + INTERRUPTED).encode())
+    os._exit(130)

@@ -210,7 +210,7 @@ def _run(
     if output is not None and is_new:
         begin_in(output, experiment)
     warmed_learner(experiment.learner)
-    with progress_bar(made.name) as bar, postponed() as wanted:
+    with postponed() as wanted, progress_bar(made.name) as bar:
         learnt = learnt_by(experiment, made, config, output, tell=bar, shall_stop=wanted.is_set)
     if isinstance(learnt, Stopped):
         return _stopped(learnt, output)

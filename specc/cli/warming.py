@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from specc.cli.console import progress_bar, say
+from specc.cli.interrupts import at_once
 
 
 def warmed(spec: Path | None) -> None:
@@ -31,7 +32,7 @@ def warmed_learner(name: str) -> None:
     if is_warm(name):
         return
     say(f"first use: compiling the kernels of {name}, about a minute, once", "bold")
-    with progress_bar("kernels") as progress:
+    with at_once(), progress_bar("kernels") as progress:
         progress(name, 0, 1)
         warm(name)
 

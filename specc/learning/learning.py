@@ -7,22 +7,25 @@ from typing import Any, final
 
 from lcs.faults import LearnerError
 from lcs.problems.problem import Problem
+from lcs.rules.compaction import Compacted
 from specc.faults import fault
 from specc.learning import folder as folders
 from specc.learning.experiment import Experiment
 from specc.learning.resuming import keep, taken_up
 from specc.learning.running import Run, begun, go_on, standing
 from specc.learning.summary import Summary, summed_up
+from specc.learning.thinning import figures_of, thinned
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Learnt:
-    """What came of an experiment: its runs, in the order of its seeds, and their figures."""
+    """What came of an experiment: its runs in the order of seeds, few rules of each, figures."""
 
     experiment: Experiment
     problem: Problem
     runs: tuple[Run, ...]
+    compacted: tuple[Compacted, ...]
     summaries: tuple[Summary, ...]
 
 
@@ -73,17 +76,31 @@ def learn(
             problem,
             experiment.cycles,
             tell=advanced,
-            keep=lambda run: _keep(run, folder),
+            keep=lambda run: _keep(run, folder, is_last=run.done == experiment.cycles),
             shall_stop=shall_stop,
         )
         if run.done < experiment.cycles:
             return Stopped(experiment, seed, run.done)
         runs.append(run)
-    summaries: list[Summary] = []
-    for run in runs:
-        tell("testing", len(summaries), len(runs))
-        summaries.append(summed_up(run, problem, experiment.tests, None))
-    return Learnt(experiment, problem, tuple(runs), tuple(summaries))
+    return _concluded(experiment, problem, runs, tell)
+
+
+def _concluded(
+    experiment: Experiment,
+    problem: Problem,
+    runs: list[Run],
+    tell: Callable[[str, int, int], None],
+) -> Learnt:
+    """What came of runs that are done."""
+    compacted, summaries = [], []
+    for i, run in enumerate(runs):
+        tell("compacting rules", 2 * i, 2 * len(runs))
+        few = thinned(run, problem)
+        tell("testing", 2 * i + 1, 2 * len(runs))
+        figures = figures_of(few.table, run, problem, experiment.tests)
+        compacted.append(few)
+        summaries.append(summed_up(run, problem, experiment.tests, figures))
+    return Learnt(experiment, problem, tuple(runs), tuple(compacted), tuple(summaries))
 
 
 def _taken_up_or_begun(
@@ -97,6 +114,6 @@ def _taken_up_or_begun(
         raise fault("V402", experiment.problem, str(error)) from error
 
 
-def _keep(run: Run, folder: Path | None) -> None:
+def _keep(run: Run, folder: Path | None, *, is_last: bool) -> None:
     if folder is not None:
-        keep(run, folders.checkpoint(folder, run.seed))
+        keep(run, folders.checkpoint(folder, run.seed), is_last=is_last)

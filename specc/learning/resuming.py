@@ -19,14 +19,22 @@ from specc.faults import fault
 from specc.files import write_atomically
 from specc.learning.running import Run
 
-NARROW: Final = {"kind": np.int8, "action": np.int32, "rules": np.int32}
+NARROW: Final = {
+    "kind": np.int8,
+    "action": np.int32,
+    "rules": np.int32,
+    "births": np.int32,
+    "deaths": np.int32,
+}
 """How columns of a course are kept."""
 
 DAMAGED: Final = "delete it, and its run begins anew"
 
 
-def keep(run: Run, path: Path) -> None:
+def keep(run: Run, path: Path, *, is_last: bool) -> None:
     """Write the run; what was kept before is replaced in one step.
+
+    is_last: of this run, so that it is worth the time to make the file small.
 
     Raises:
         SpecError: it can't be written (V347).
@@ -42,7 +50,8 @@ def keep(run: Run, path: Path) -> None:
         **{name: each.astype(NARROW.get(name, each.dtype)) for name, each in columns.items()},
     }
     content = io.BytesIO()
-    np.savez(content, **kept)
+    write = np.savez_compressed if is_last else np.savez
+    write(content, **kept)
     write_atomically(path, content.getvalue())
 
 

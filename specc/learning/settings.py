@@ -124,9 +124,13 @@ def _leaves(config: object, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, 
 
 def _path(name: str, known: Mapping[tuple[str, ...], object]) -> tuple[str, ...] | None:
     """Where the value of this name is; of several that end so the outermost."""
-    parts = tuple(name.replace("-", "_").lower().split("."))
-    fitting = [path for path in known if path[-len(parts) :] == parts]
+    parts = _folded(name).split(".")
+    fitting = [path for path in known if _folded(".".join(path)).split(".")[-len(parts) :] == parts]
     return min(fitting, key=len, default=None)
+
+
+def _folded(name: str) -> str:
+    return name.replace("-", "_").lower()
 
 
 def _shortest(path: tuple[str, ...], known: Mapping[tuple[str, ...], object]) -> str:
@@ -138,8 +142,7 @@ def _unknown(
 ) -> Diagnostic:
     remedy = did_you_mean(name, [_shortest(path, known) for path in known])
     if not remedy:
-        word = name.replace("-", "_").lower()
-        holding = [_shortest(path, known) for path in known if word in path[-1]]
+        holding = [_shortest(path, known) for path in known if _folded(name) in _folded(path[-1])]
         remedy = did_you_mean_one_of(holding[:4])
     remedy = remedy or "`specc learn --list` tells all that can be set"
     return problem("V341", f"{name}={text}", f"{learner} has no constant '{name}'", remedy)

@@ -6,6 +6,8 @@ import numpy as np
 
 from lcs.compiled import cache_folder
 from lcs.problems.classes import checkerboard
+from lcs.rules.compaction import compact
+from lcs.rules.experience import remembered
 from specc.learning.learners import LEARNERS, learner_for
 
 CYCLES: Final = 500
@@ -24,6 +26,8 @@ def warm(learner: str) -> None:
     x, rewards, _ = problem.drawn(CYCLES, np.random.default_rng(0))
     pupil.run(x, rewards)
     pupil.decide(x)
+    tried = np.zeros(CYCLES, np.int64)
+    compact(pupil.rules(), remembered(x, tried, rewards[:, 0], problem.classes))
     folder = cache_folder()
     if folder is not None:
         (folder / f"warm-{learner}").touch()

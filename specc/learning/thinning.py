@@ -1,0 +1,48 @@
+"""The rules of a run, and the few that say the same on what the run has seen."""
+
+from typing import Final
+
+import numpy as np
+
+from lcs.problems.problem import Problem
+from lcs.rules.compaction import Compacted, compact
+from lcs.rules.deciding import decide
+from lcs.rules.experience import Experience, remembered
+from lcs.rules.table import RuleTable
+from specc.learning.running import BLOCK, Run, block, fresh
+from specc.learning.summary import Thinned
+
+REMEMBERED: Final = 10_000
+"""Cycles, the last ones: what compaction goes by."""
+
+
+def thinned(run: Run, problem: Problem) -> Compacted:
+    """Few rules that say what all rules of a run say, on the last examples that it learnt from.
+
+    Of each only the reward of the action that was tried is known, as to the learner itself.
+    """
+    return compact(run.learner.rules(), seen_by(run, problem), noise=_noise(problem))
+
+
+def seen_by(run: Run, problem: Problem) -> Experience:
+    """The last examples that a run learnt from: inputs, and rewards of what was tried."""
+    course, _ = run.so_far()
+    first = max(0, run.done - REMEMBERED) // BLOCK
+    drawn = [block(problem, run.seed, number) for number in range(first, -(-run.done // BLOCK))]
+    begin = first * BLOCK
+    x = np.concatenate([inputs for inputs, _, _ in drawn])[: run.done - begin]
+    rewards = np.concatenate([given for _, given, _ in drawn])[: run.done - begin]
+    action = course.action[begin:]
+    tried = np.flatnonzero(~course.is_test[begin:])
+    return remembered(x[tried], action[tried], rewards[tried, action[tried]], problem.classes)
+
+
+def figures_of(small: RuleTable, run: Run, problem: Problem, count: int) -> Thinned:
+    """How few they are, and how right on fresh problems; uncovered ones count as wrong."""
+    x, classes = fresh(problem, run.seed, count)
+    return Thinned(len(small), float(np.mean(decide(small, x).best == classes)))
+
+
+def _noise(problem: Problem) -> float:
+    """What compaction passes over: the share of rewards that are flipped."""
+    return min(problem.flipped, 0.49)
