@@ -17,6 +17,7 @@ from lcs.rules.candidates import Candidates, Examples, counts, grown
 from lcs.rules.choosing import chosen, snap
 from lcs.rules.deciding import Decisions, boxes_hold, columns_of, decide
 from lcs.rules.experience import Accuracy, Experience, accuracy, nearest_level
+from lcs.rules.parts import joined, rules_of
 from lcs.rules.table import RuleTable
 
 LAST_RESORT: Final = 1e-6
@@ -85,34 +86,6 @@ def compact(
     small = joined(parts)
     idle = int((~boxes_hold(table.lower, table.upper, table.high, seen.inputs).any(axis=1)).sum())
     return Compacted(small, len(table), idle, accuracy(table, seen), accuracy(small, seen))
-
-
-def rules_of(table: RuleTable, those: Booleans | Integers) -> RuleTable:
-    """Some rules of a table."""
-    return RuleTable(
-        actions=table.actions,
-        action=table.action[those],
-        lower=table.lower[those],
-        upper=table.upper[those],
-        prediction=table.prediction[those],
-        weight=table.weight[those],
-        right=table.right[those],
-        wrong=table.wrong[those],
-        low=table.low,
-        high=table.high,
-    )
-
-
-def joined(tables: list[RuleTable]) -> RuleTable:
-    """The rules of several tables over the same inputs."""
-    columns = ("action", "lower", "upper", "prediction", "weight", "right", "wrong")
-    first = tables[0]
-    return RuleTable(
-        actions=first.actions,
-        low=first.low,
-        high=first.high,
-        **{name: np.concatenate([getattr(each, name) for each in tables]) for name in columns},
-    )
 
 
 def _examples(

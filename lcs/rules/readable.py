@@ -1,0 +1,47 @@
+"""Rules with bounds that are short to read."""
+
+import dataclasses
+import math
+from typing import Final
+
+import numpy as np
+
+from lcs.arrays import Array
+from lcs.rules.digits import just_below, snapped
+from lcs.rules.table import RuleTable
+
+DIGITS: Final = 4
+"""Of a bound, counted from the first of the input's range, where no examples say how many."""
+
+
+def readable(table: RuleTable, inputs: Array | None = None) -> RuleTable:
+    """The rules with bounds of few digits.
+
+    inputs (T, n): no bound moves past the value of one of them, so that each rule holds on the
+    same ones as before. Without them, bounds are rounded to a ten thousandth of the range.
+    """
+    lower, upper = table.lower.copy(), table.upper.copy()
+    for i in range(lower.shape[1]):
+        column = None if inputs is None else np.unique(inputs[:, i])
+        low, high = float(table.low[i]), float(table.high[i])
+        for bounds in (lower, upper):
+            for r, bound in enumerate(bounds[:, i].tolist()):
+                if low < bound < high:
+                    bounds[r, i] = _short(bound, column, low, high)
+    is_sliver = ~(lower < upper)
+    lower[is_sliver], upper[is_sliver] = table.lower[is_sliver], table.upper[is_sliver]
+    return dataclasses.replace(table, lower=lower, upper=upper)
+
+
+def _short(bound: float, column: Array | None, low: float, high: float) -> float:
+    """The bound with few digits, strictly between the ends of the range."""
+    if column is not None:
+        at = int(np.searchsorted(column, bound))
+        above = max(low, float(column[at - 1])) if at > 0 else low
+        up_to = float(column[at]) if at < len(column) else math.nextafter(high, -math.inf)
+        return snapped(above, min(up_to, math.nextafter(high, -math.inf)), bound)
+    if just_below(bound) is not None or not math.isfinite(high - low):
+        return bound
+    step = math.floor(math.log10(high - low)) + 1 - DIGITS
+    short = float(f"{round(bound / 10.0**step)}e{step}")
+    return short if low < short < high else bound
