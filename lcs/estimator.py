@@ -212,7 +212,8 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         known = self.classes_[np.minimum(found, len(self.classes_) - 1)] == labels
         for row in np.flatnonzero(~known):
             raise LearnerError(
-                f"row {row}: class {labels[row]!r} is unknown; classes are {self.classes_.tolist()}"
+                f"row {row}: class {labels[row:].tolist()[0]!r} is unknown; "
+                f"classes are {self.classes_.tolist()}"
             )
         self._meet(found)
         land = self.learner_.population.land
