@@ -18,12 +18,16 @@ import numpy.typing as npt
 from lcs.alcsr.learner import ALCSR
 from lcs.faults import LearnerError
 from lcs.state import Saved, State
+from lcs.xcsr.learner import XCSR
 
 FORMAT: Final = "specc learner"
 VERSION: Final = 1
 HEADER: Final = "header.json"
 
-KINDS: Final[Mapping[str, Callable[[State], Any]]] = {"ALCSR": ALCSR.from_state}
+KINDS: Final[Mapping[str, Callable[[State], Any]]] = {
+    "ALCSR": ALCSR.from_state,
+    "XCSR": XCSR.from_state,
+}
 """How a learner of each kind is made."""
 
 

@@ -1,6 +1,7 @@
 """XCSR as one uses it: cycle by cycle, over several steps, or over many problems at once."""
 
-from typing import final
+from dataclasses import dataclass
+from typing import Any, Self, final
 
 import numpy as np
 import numpy.typing as npt
@@ -10,10 +11,24 @@ from lcs.course import Course, Kind
 from lcs.faults import LearnerError
 from lcs.given import input_of, inputs_of, reward_of, rewards_of
 from lcs.rules.table import RuleTable
+from lcs.state import State, chance_from, from_plain, plain_of, plain_of_chance
 from lcs.xcsr.config import Config, Outside
 from lcs.xcsr.kernels import cycle
 from lcs.xcsr.kernels.layout import LINES, Classifiers, Numbers, Scratch, Space
-from lcs.xcsr.population import Population, empty, scratch_of
+from lcs.xcsr.population import Population, all_arrays, empty, restored, scratch_of
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Plain:
+    """What is saved of a learner beside its arrays."""
+
+    actions: int
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    config: Config
+    chance: dict[str, Any]
+    is_trying: bool
 
 
 @final
@@ -136,6 +151,34 @@ class XCSR:
             low=space.low.copy(),
             high=space.high.copy(),
         )
+
+    def state(self) -> State:
+        """All that it is, now; between an action and its reward too."""
+        space = self.population.space
+        plain = Plain(
+            actions=self.actions,
+            low=tuple(space.low.tolist()),
+            high=tuple(space.high.tolist()),
+            config=self.config,
+            chance=plain_of_chance(self.chance),
+            is_trying=self.is_trying,
+        )
+        return State("XCSR", plain_of(plain), all_arrays(self.population))
+
+    @classmethod
+    def from_state(cls, state: State) -> Self:
+        """The learner that had this state: it goes on bit for bit as that one would.
+
+        Raises:
+            LearnerError: the state is of another version, or damaged.
+        """
+        plain = from_plain(Plain, state.plain, "values")
+        inputs = len(plain.low)
+        learner = cls(plain.actions, inputs, plain.config, low=plain.low, high=plain.high)
+        learner.population = restored(learner.population, state.arrays)
+        learner.chance = chance_from(plain.chance)
+        learner._is_trying = plain.is_trying
+        return learner
 
     @property
     def _n(self) -> int:

@@ -1,13 +1,18 @@
 """The classifiers of one learner, with room for N of them."""
 
-from dataclasses import dataclass
-from typing import final
+from dataclasses import dataclass, replace
+from typing import Final, final
 
 import numpy as np
 
-from lcs.arrays import Array
+from lcs.arrays import Array, Integers
+from lcs.faults import LearnerError
+from lcs.state import Arrays, arrays_of, filled
 from lcs.xcsr.config import Config
-from lcs.xcsr.kernels.layout import ROOM_BESIDES, Classifiers, Numbers, Scratch, Space
+from lcs.xcsr.kernels.layout import LINES, ROOM_BESIDES, Classifiers, Numbers, Scratch, Space
+
+KEPT: Final = ("classifiers", "scratch")
+"""What is saved; the rest is made anew from the config and the range."""
 
 
 @final
@@ -19,6 +24,38 @@ class Population:
     space: Space
     numbers: Numbers
     scratch: Scratch
+
+
+def all_arrays(population: Population) -> Arrays:
+    """Copies of the arrays that change, by name."""
+    parts = {name: getattr(population, name) for name in KEPT}
+    return {key: each for name in KEPT for key, each in arrays_of(name, parts[name]).items()}
+
+
+def restored(population: Population, arrays: Arrays) -> Population:
+    """What `all_arrays` were of; the population is of the same config.
+
+    Raises:
+        LearnerError: an array is missing or of another type or shape, or names what is not there.
+    """
+    parts = {name: filled(name, getattr(population, name), arrays) for name in KEPT}
+    for name in KEPT:
+        for mine, theirs in zip(getattr(population, name), parts[name], strict=True):
+            if mine.shape != theirs.shape:
+                raise LearnerError(f"an array of '{name}' is {theirs.shape}, and not {mine.shape}")
+    whole = replace(population, **parts)
+    them, scratch = whole.classifiers, whole.scratch
+    lines = them.counts[LINES]
+    if not 0 <= lines <= them.action.size or _is_unknown(them.action, scratch.votes.size):
+        raise LearnerError("there are more classifiers than room, or unknown actions")
+    for members, size in zip(scratch.sets, scratch.sizes, strict=True):
+        if not 0 <= size <= lines or _is_unknown(members[:size], lines):
+            raise LearnerError("a set names classifiers that are not there")
+    return whole
+
+
+def _is_unknown(named: Integers, count: int) -> bool:
+    return bool(np.any((named < 0) | (named >= count)))
 
 
 def empty(actions: int, config: Config, low: Array, high: Array) -> Population:

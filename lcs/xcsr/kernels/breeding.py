@@ -9,6 +9,7 @@ from lcs.xcsr.kernels.layout import (
     ACTING,
     COPIES,
     LINES,
+    MATCHED,
     TIME,
     Classifiers,
     Numbers,
@@ -36,7 +37,8 @@ def breed(
     one = select(them, numbers, scratch, rng)
     other = select(them, numbers, scratch, rng)
     raise_both(them, space, numbers, scratch, one, other, rng)
-    scratch.sizes[:] = 0
+    scratch.sizes[MATCHED] = 0
+    scratch.sizes[ACTING] = 0
     delete(them, numbers, scratch, rng)
 
 

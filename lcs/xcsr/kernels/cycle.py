@@ -171,5 +171,6 @@ def decide(
         find(them, scratch, inputs[t])
         unknown = actions_without(them, scratch)
         predict(them, scratch)
-        expected[t] = scratch.votes
+        for a in range(scratch.votes.size):
+            expected[t, a] = scratch.votes[a]
         actions[t] = -1 if unknown > 0 else best_of(scratch, rng)

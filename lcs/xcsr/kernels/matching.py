@@ -69,7 +69,8 @@ def find(them: Classifiers, scratch: Scratch, x: Array) -> None:
 @part
 def actions_without(them: Classifiers, scratch: Scratch) -> int:
     """How many actions nobody in [M] has; they are the first of `scratch.actions`."""
-    scratch.totals[:] = 0.0
+    for a in range(scratch.totals.size):
+        scratch.totals[a] = 0.0
     for k in scratch.sets[MATCHED, : scratch.sizes[MATCHED]]:
         scratch.totals[them.action[k]] = 1.0
     unknown = 0
@@ -116,8 +117,9 @@ def cover(
 def predict(them: Classifiers, scratch: Scratch) -> None:
     """The prediction array: means weighed by fitness, NaN for actions that [M] has not."""
     votes, totals = scratch.votes, scratch.totals
-    votes[:] = 0.0
-    totals[:] = 0.0
+    for a in range(votes.size):
+        votes[a] = 0.0
+        totals[a] = 0.0
     for k in scratch.sets[MATCHED, : scratch.sizes[MATCHED]]:
         a = them.action[k]
         votes[a] += them.prediction[k] * them.fitness[k]
