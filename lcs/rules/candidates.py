@@ -1,5 +1,6 @@
 """Boxes as wide as the examples allow, grown from rules: what a small set is chosen from."""
 
+import dataclasses
 from dataclasses import dataclass, field
 from typing import Final, final
 
@@ -10,8 +11,8 @@ from lcs.rules.deciding import boxes_hold
 from lcs.rules.kernels import growing, voting
 from lcs.rules.table import RuleTable
 
-NEVER: Final = 1e12
-"""The penalty of an example that no box may take in."""
+PENALTIES: Final = np.array([1.0, 3.0, 10.0, 100.0, 1e12])
+"""What an example of another level counts, sweep by sweep; by the last no box takes it in."""
 
 
 @final
@@ -39,7 +40,7 @@ class Examples:
 class Candidates:
     """Boxes lower, upper (each n,) of a level, in the order in which they were grown.
 
-    is_rule: taken over from the table as it was. of (T,): the level whose boxes have to hold an
+    of (T,): the level whose boxes have to hold an
     example; -1 of those that nobody has to.
     """
 
@@ -47,7 +48,6 @@ class Candidates:
     lower: list[Array] = field(default_factory=list)
     upper: list[Array] = field(default_factory=list)
     level: list[int] = field(default_factory=list)
-    is_rule: list[bool] = field(default_factory=list)
 
     def boxes(self, those: Integers) -> tuple[Array, Array]:
         """Their lower and upper bounds, (C, n) each."""
@@ -56,39 +56,60 @@ class Candidates:
         upper = np.reshape([self.upper[c] for c in those], (-1, n))
         return lower, upper
 
-    def add(self, lower: Array, upper: Array, level: int, *, is_rule: bool = False) -> None:
+    def add(self, lower: Array, upper: Array, level: int) -> None:
         """One more."""
         self.lower.append(lower)
         self.upper.append(upper)
         self.level.append(level)
-        self.is_rule.append(is_rule)
 
 
-def grown(
-    rules: RuleTable, level: Integers, seen: Examples, to_cover: Booleans, noise: float
-) -> Candidates:
+def grown(rules: RuleTable, level: Integers, seen: Examples, to_cover: Booleans) -> Candidates:
     """Candidates that hold all examples `to_cover` (T,), from the rules of one action.
 
-    level (R,): of the rules' predictions. noise: the share of wrong rewards; with 0 no box holds an
-    example of another level.
+    level (R,): of the rules' predictions. No box holds an example that was told another level.
+    First those are covered that were told: from rules of their level, or else from any. Then the
+    others, which may be in boxes of any level.
     """
     found = Candidates(np.full(len(seen.x), -1))
-    waiting = np.flatnonzero(to_cover)
-    for r in _by_evidence(rules, level, seen):
-        waiting = _from_rule(
-            rules.lower[r], rules.upper[r], int(level[r]), seen, waiting, found, noise
-        )
-    for r in _by_evidence(rules, level, seen):
-        if noise == 0.0:
-            for other in np.unique(seen.level[waiting]):
-                waiting = _from_rule(
-                    rules.lower[r], rules.upper[r], int(other), seen, waiting, found, noise
-                )
-        else:
-            waiting = _taken_over(
-                rules.lower[r], rules.upper[r], int(level[r]), seen, waiting, found
-            )
+    order = _by_evidence(rules, level, seen)
+    for is_told in (True, False):
+        waiting = np.flatnonzero(to_cover & (seen.is_told == is_told) & (found.of < 0))
+        for of_any_level in (False, True):
+            for r in order:
+                own = [int(level[r])]
+                for each in np.unique(seen.level[waiting]) if of_any_level else own:
+                    box = rules.lower[r], rules.upper[r], int(each)
+                    waiting = _from_rule(box, seen, waiting, found)
     return found
+
+
+def denoised(
+    rules: RuleTable, level: Integers, seen: Examples, to_cover: Booleans, noise: float
+) -> Examples:
+    """The examples with the levels of boxes that hold more of one than noise of that share can.
+
+    Of those that are in no such box nothing is told.
+    """
+    last = np.sqrt((1.0 - noise) / noise)
+    # Of so many examples, somewhere so many in a row are wrong by chance in one case of twenty.
+    enough = np.log(len(seen.x) / 0.05) / np.log(1.0 / noise)
+    of, waiting = np.full(len(seen.x), -1), to_cover & seen.is_told
+    for r in _by_evidence(rules, level, seen):
+        rows = np.flatnonzero(waiting & (seen.level == level[r]))
+        lower, upper = rules.lower[r], rules.upper[r]
+        inside = rows[boxes_hold(lower[None], upper[None], seen.high, seen.x[rows])[0]]
+        if inside.size < enough:
+            continue
+        box = lower, upper, int(level[r])
+        low, up = grown_box(box, inside, seen, np.array([1.0, last]))
+        held = boxes_hold(low[None], up[None], seen.high, seen.x)[0]
+        right, wrong = counts(low[None], up[None], level[r : r + 1], seen)
+        if right[0] > last * wrong[0] + enough:
+            of[held & (of < 0)] = level[r]
+            waiting &= ~held
+    return dataclasses.replace(
+        seen, level=np.where(of >= 0, of, seen.level), is_told=seen.is_told & (of >= 0)
+    )
 
 
 def _by_evidence(rules: RuleTable, level: Integers, seen: Examples) -> Integers:
@@ -110,40 +131,23 @@ def counts(
 
 
 def _from_rule(
-    lower: Array,
-    upper: Array,
-    level: int,
-    seen: Examples,
-    waiting: Integers,
-    found: Candidates,
-    noise: float,
+    box: tuple[Array, Array, int], seen: Examples, waiting: Integers, found: Candidates
 ) -> Integers:
-    """Grow boxes around examples of the level in a rule's box; those that still wait."""
-    box = (lower[None], upper[None], seen.high)
-    inside = waiting[boxes_hold(*box, seen.x[waiting])[0] & (seen.level[waiting] == level)]
+    """Grow boxes around waiting examples of a level in a box; those that still wait.
+
+    box: lower, upper (n,) and the level.
+    """
+    lower, upper, level = box
+    rows = waiting[seen.level[waiting] == level]
+    inside = rows[boxes_hold(lower[None], upper[None], seen.high, seen.x[rows])[0]]
     while inside.size:
-        low, up = grown_box(lower, upper, level, inside, seen, noise)
-        held = boxes_hold(low[None], up[None], seen.high, seen.x)[0]
-        if noise > 0.0 and not _is_worth(held, level, seen, noise):
-            inside = inside[inside != _middle(seen, inside)]
-            continue
+        low, up = grown_box(box, inside, seen)
         found.add(low, up, level)
-        held &= (found.of < 0) & ((seen.level == level) | (noise > 0.0))
+        held = boxes_hold(low[None], up[None], seen.high, seen.x)[0]
+        held &= (found.of < 0) & ((seen.level == level) | ~seen.is_told)
         found.of[held] = level
         inside, waiting = inside[~held[inside]], waiting[~held[waiting]]
     return waiting
-
-
-def _taken_over(
-    lower: Array, upper: Array, level: int, seen: Examples, waiting: Integers, found: Candidates
-) -> Integers:
-    """Keep a rule as it is, if it holds examples that wait; those that still do."""
-    held = boxes_hold(lower[None], upper[None], seen.high, seen.x[waiting])[0]
-    if held.any():
-        found.add(lower, upper, level, is_rule=True)
-        found.of[waiting[held]] = level
-    left: Integers = waiting[~held]
-    return left
 
 
 def _middle(seen: Examples, those: Integers) -> int:
@@ -154,37 +158,16 @@ def _middle(seen: Examples, those: Integers) -> int:
 
 
 def grown_box(
-    lower: Array, upper: Array, level: int, around: Integers, seen: Examples, noise: float
+    box: tuple[Array, Array, int],
+    around: Integers,
+    seen: Examples,
+    penalties: Array = PENALTIES,
 ) -> tuple[Array, Array]:
-    """The box, made as wide as it may be around the example in the middle of some in it."""
-    seed = _middle(seen, around)
+    """A box, made as wide as it may be around the example in the middle of some in it."""
+    lower, upper, level = box
     low, up = lower.copy(), upper.copy()
-    own = np.where(seen.level == level, seen.count, 0).astype(np.float64)
-    other = np.where((seen.level != level) & seen.is_told, seen.count, 0).astype(np.float64)
-    growing.grow(
-        seen.columns,
-        seen.order,
-        (own, other),
-        seed,
-        (low, up, seen.low, seen.high),
-        penalties(noise),
-    )
+    count = seen.count * seen.is_told
+    worth = np.where(seen.level == level, count, 0.0), np.where(seen.level != level, count, 0.0)
+    ends = (low, up, seen.low, seen.high)
+    growing.grow(seen.columns, seen.order, worth, _middle(seen, around), ends, penalties)
     return low, up
-
-
-def penalties(noise: float) -> Array:
-    """What a wrong example counts, sweep by sweep.
-
-    Where a share of the rewards is wrong, a box of one level has (1 - noise) / noise right examples
-    for each wrong one, and a box across a decision surface about one: between both lies the last.
-    """
-    if noise == 0.0:
-        return np.array([1.0, 3.0, 10.0, 100.0, NEVER])
-    return np.array([1.0, np.sqrt((1.0 - noise) / noise)])
-
-
-def _is_worth(held: Booleans, level: int, seen: Examples, noise: float) -> bool:
-    """Whether what a box holds is of its level more than noise makes it."""
-    own = seen.count[held & (seen.level == level)].sum()
-    other = seen.count[held & (seen.level != level) & seen.is_told].sum()
-    return bool(own > penalties(noise)[-1] * other + 2.0)

@@ -18,12 +18,12 @@ GIVE: Final = 0.01
 """By how much of the range a bound may give way to one of fewer digits, where others hold."""
 
 
-def chosen(found: Candidates, seen: Examples, noise: float) -> Integers:
+def chosen(found: Candidates, seen: Examples) -> Integers:
     """Which candidates to take; more are grown from them as long as that makes them fewer."""
     kept = _of_all_levels(found, seen)
     for _ in range(ROUNDS):
         for c in kept:
-            _grow_again(found, int(c), kept, seen, noise)
+            _grow_again(found, int(c), kept, seen)
         fewer = _of_all_levels(found, seen)
         if len(fewer) >= len(kept):
             break
@@ -45,18 +45,18 @@ def _held(found: Candidates, those: Integers, x: Array, seen: Examples) -> Boole
     return boxes_hold(lower, upper, seen.high, x)
 
 
-def _grow_again(found: Candidates, c: int, kept: Integers, seen: Examples, noise: float) -> None:
+def _grow_again(found: Candidates, c: int, kept: Integers, seen: Examples) -> None:
     """Add the box that grows from what candidate c alone holds (Espresso's reduce and expand)."""
     level = found.level[c]
     same = kept[np.array(found.level)[kept] == level]
     need = np.flatnonzero(found.of == level)
     held = _held(found, same, seen.x[need], seen)
     alone = need[held[same == c][0] & (held.sum(axis=0) == 1)]
-    if found.is_rule[c] or not alone.size:
+    if not alone.size:
         return
     lower = seen.x[alone].min(axis=0)
     upper = np.minimum(np.nextafter(seen.x[alone].max(axis=0), np.inf), seen.high)
-    found.add(*grown_box(lower, upper, level, alone, seen, noise), level)
+    found.add(*grown_box((lower, upper, level), alone, seen), level)
 
 
 def snap(found: Candidates, kept: Integers, seen: Examples) -> None:
@@ -70,11 +70,10 @@ def snap(found: Candidates, kept: Integers, seen: Examples) -> None:
         x = seen.x[found.of == level]
         held = _held(found, np.array(same, np.int64), x, seen)
         for row, c in enumerate(same):
-            if not found.is_rule[c]:
-                for i in range(x.shape[1]):
-                    alone = x[held[row] & (held.sum(axis=0) == 1), i]
-                    _snap_interval(found.lower[c], found.upper[c], i, alone, seen)
-                    held[row] = _held(found, np.array([c]), x, seen)[0]
+            for i in range(x.shape[1]):
+                alone = x[held[row] & (held.sum(axis=0) == 1), i]
+                _snap_interval(found.lower[c], found.upper[c], i, alone, seen)
+                held[row] = _held(found, np.array([c]), x, seen)[0]
 
 
 def _snap_interval(lower: Array, upper: Array, i: int, alone: Array, seen: Examples) -> None:

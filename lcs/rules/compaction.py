@@ -13,15 +13,16 @@ import numpy as np
 
 from lcs.arrays import Array, Booleans, Integers
 from lcs.faults import LearnerError
-from lcs.rules.candidates import Candidates, Examples, counts, grown
+from lcs.inputs import Input
+from lcs.rules.candidates import Candidates, Examples, counts, denoised, grown
 from lcs.rules.choosing import chosen, snap
 from lcs.rules.deciding import Decisions, boxes_hold, columns_of, decide
 from lcs.rules.experience import Accuracy, Experience, accuracy, nearest_level
-from lcs.rules.parts import joined, rules_of
+from lcs.rules.parts import in_range, joined, rules_of
 from lcs.rules.table import RuleTable
 
-LAST_RESORT: Final = 1e-6
-"""By what the vote is weighed of rules that were kept for their cover only."""
+PASSES: Final = 10
+"""At most; each but the last makes the rules fewer or more right."""
 
 
 @final
@@ -30,7 +31,8 @@ class Compacted:
     """The small set, and what it cost.
 
     table: its counts of right and wrong are of the examples given, and weight is the odds of being
-    right, (right + 1) / (wrong + 1). rules_before: how many there were; idle: how many of those
+    right, (right + 1) / (wrong + 1); a table that can't be made better is left as it was. Its known
+    range holds all examples. rules_before: how many there were; idle: how many of those
     held on no example. before, after: on the examples.
     """
 
@@ -56,12 +58,13 @@ def compact(
     """Few rules that hold wherever the table's held on the examples, and are as right there.
 
     Without noise no example that was rightly expected is wrong after it, and what was expected
-    wrongly is put right. With noise, the share of wrong rewards, wrong examples are passed over.
+    wrongly is put right. With it, levels are first made those of boxes that hold more of one level
+    than noise can, so that what is wrong by chance is passed over.
 
     Args:
         table: the rules; predictions are read as the nearest reward level.
         seen: examples. An action's reward that is not known asks for cover only.
-        noise: below 0.5.
+        noise: the share of wrong rewards, below 0.5.
         few_digits: bounds are the shortest numbers that keep each example on its side, else the
             middle between the examples.
 
@@ -73,19 +76,42 @@ def compact(
         raise LearnerError(f"noise is a share of rewards, from 0 to below 0.5; got {noise}")
     if seen.rewards.shape[1] != table.actions:
         raise LearnerError(f"{table.actions} actions need as many columns of rewards")
+    first = _in_range_of(table, seen.inputs)
+    before = now = accuracy(table, seen)
+    kept = first
+    for _ in range(PASSES):
+        small = _passed(kept, seen, noise, few_digits=few_digits)
+        after = accuracy(small, seen)
+        is_fewer = len(small) < len(kept)
+        if not is_fewer and (noise > 0.0 or after.expected <= now.expected):
+            break
+        kept, now = small, after
+    idle = int((~boxes_hold(first.lower, first.upper, first.high, seen.inputs).any(axis=1)).sum())
+    return Compacted(kept, len(table), idle, before, accuracy(kept, seen))
+
+
+def _in_range_of(table: RuleTable, inputs: Array) -> RuleTable:
+    """The rules with a known range that holds all inputs (T, n)."""
+    ends = zip(inputs.min(axis=0).tolist(), inputs.max(axis=0).tolist(), strict=True)
+    return in_range(table, [Input("", low=low, high=high) for low, high in ends])
+
+
+def _passed(table: RuleTable, seen: Experience, noise: float, *, few_digits: bool) -> RuleTable:
+    """One pass: grow from the rules, choose, snap."""
     levels, said = seen.levels, decide(table, seen.inputs)
     parts = []
     for action in range(table.actions):
         rules = rules_of(table, table.action == action)
+        level = nearest_level(rules.prediction, levels)
         examples, to_cover = _examples(table, seen, said, levels, action)
-        rule_level = nearest_level(rules.prediction, levels)
-        candidates = grown(rules, rule_level, examples, to_cover, noise)
-        parts.append(
-            _chosen(candidates, examples, table, action, levels, noise, few_digits=few_digits)
-        )
-    small = joined(parts)
-    idle = int((~boxes_hold(table.lower, table.upper, table.high, seen.inputs).any(axis=1)).sum())
-    return Compacted(small, len(table), idle, accuracy(table, seen), accuracy(small, seen))
+        if noise > 0.0:
+            examples = denoised(rules, level, examples, to_cover, noise)
+        found = grown(rules, level, examples, to_cover)
+        kept = chosen(found, examples)
+        if few_digits:
+            snap(found, kept, examples)
+        parts.append(_as_rules(found, kept, examples, table, action, levels))
+    return joined(parts)
 
 
 def _examples(
@@ -123,32 +149,25 @@ def _equal_as_one(
     return np.ascontiguousarray(x), level, np.asarray(has_told, np.bool_), count
 
 
-def _chosen(
+def _as_rules(
     found: Candidates,
+    kept: Integers,
     seen: Examples,
     table: RuleTable,
     action: int,
     levels: Array,
-    noise: float,
-    *,
-    few_digits: bool,
 ) -> RuleTable:
-    """The fewest candidates of each level that hold what its candidates have to."""
-    kept = chosen(found, seen, noise)
-    if few_digits:
-        snap(found, kept, seen)
+    """The kept candidates as rules of an action."""
     lower, upper = found.boxes(kept)
     level = np.array(found.level, np.int64)[kept]
-    is_rule = np.array(found.is_rule, np.bool_)[kept]
     right, wrong = counts(lower, upper, level, seen)
-    odds = (right + 1.0) / (wrong + 1.0)
     return RuleTable(
         actions=table.actions,
         action=np.full(len(kept), action),
         lower=lower,
         upper=upper,
         prediction=levels[level],
-        weight=np.where(is_rule, LAST_RESORT * odds, odds),
+        weight=(right + 1.0) / (wrong + 1.0),
         right=right,
         wrong=wrong,
         low=table.low,

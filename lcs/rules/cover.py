@@ -6,7 +6,7 @@ import numpy as np
 
 from lcs.arrays import Array, Booleans
 
-STEPS: Final = 20_000
+STEPS: Final = 2_000
 """Of the search for a smaller cover; where they end, the best so far is taken."""
 
 
