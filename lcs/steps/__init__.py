@@ -1,0 +1,1 @@
+"""Learning over several steps, where the reward comes late."""

@@ -1,0 +1,248 @@
+"""A learner for delayed rewards: the land remembers steps, and bodies divide in it."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+import numpy.typing as npt
+
+from lcs.arrays import Array, Booleans, Integers
+from lcs.faults import LearnerError
+from lcs.problems.steps import Plane, World
+from lcs.rules.table import RuleTable
+from lcs.steps.config import Config
+from lcs.steps.kernels import episodes, growing, voting
+from lcs.steps.kernels.layout import Bodies, Land, Numbers
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Episodes:
+    """How E episodes went, all (E,).
+
+    steps: how many. returns: the sum of their rewards, not discounted. reached: whether they ended
+    by themselves, not given up. bodies: how many there were after it.
+    """
+
+    steps: Integers
+    returns: Array
+    reached: Booleans
+    bodies: Integers
+
+
+@final
+class StepsLearner:
+    """A learner for several steps with a random state of its own.
+
+    Args:
+        actions: how many there are.
+        inputs: how many numbers a place has.
+        config: the constants.
+        seed: of all its chance.
+    """
+
+    def __init__(
+        self, actions: int, inputs: int, config: Config | None = None, *, seed: int = 0
+    ) -> None:
+        self.config = config or Config()
+        self.land = _empty_land(self.config.memories, inputs)
+        self.bodies = _one_body(actions, inputs)
+        self.due = self.config.first
+        self.chance = np.random.default_rng(seed)
+        self._waits: tuple[Array, int] | None = None
+
+    @property
+    def actions(self) -> int:
+        """How many there are."""
+        return int(self.bodies.meals.shape[1])
+
+    def act(self, x: npt.ArrayLike) -> int:
+        """The action to take at a place (n,): the best, or by chance any; `learn` follows.
+
+        Raises:
+            LearnerError: not n finite numbers, or `learn` of the action before is owed.
+        """
+        if self._waits is not None:
+            raise LearnerError(
+                "the action before waits for what it led to: call learn(reward, next_x, done) first"
+            )
+        place = self._checked(np.asarray(x, np.float64)[None])[0]
+        action = int(voting.try_once(self.bodies, place, self.config.explore, self.chance))
+        self._waits = (place, action)
+        return action
+
+    def learn(self, reward: float, next_x: npt.ArrayLike, done: bool) -> None:  # noqa: FBT001 as gymnasium says it
+        """What the action led to: a reward, a place (n,), and whether the episode ends there.
+
+        Raises:
+            LearnerError: no action waits, or something is not finite.
+        """
+        if self._waits is None:
+            raise LearnerError("no action waits for what it led to: call act(x) first")
+        if not np.isfinite(reward):
+            raise LearnerError(f"a reward is a finite number, and {reward} is none")
+        after = self._checked(np.asarray(next_x, np.float64)[None])[0]
+        place, action = self._waits
+        voting.remember_once(
+            self.land, place, action, float(reward), after, bool(done), self.chance
+        )
+        self._waits = None
+        if done:
+            self.end_episode()
+
+    def end_episode(self) -> None:
+        """Grow if it is time to; for episodes that are given up, since `learn` calls it else."""
+        if self.land.seen[0] >= self.due:
+            self.grow()
+            self.due = 2 * int(self.land.seen[0])
+
+    def grow(self) -> None:
+        """Grow all bodies anew from what the land remembers."""
+        self.bodies = Bodies(*growing.grow(self.land, self.bodies, self._numbers(), self.chance))
+
+    def run(self, world: World, count: int, outside: np.random.Generator) -> Episodes:
+        """Learn in so many episodes of a world; all chance of the world is `outside`.
+
+        In a `Plane` episodes are compiled; any other world is asked step by step.
+
+        Raises:
+            LearnerError: the world has other actions or inputs.
+        """
+        self._fits(world)
+        told, bodies, done = np.zeros((count, 3)), np.zeros(count, np.int64), 0
+        while done < count:
+            before = done
+            if isinstance(world, Plane):
+                done = self._run_compiled(world, told, done, outside)
+            else:
+                told[done] = self._one_episode(world, outside)
+                done += 1
+            bodies[before:done] = len(self.bodies.lower)
+            self.end_episode()
+        return _told(told, bodies)
+
+    def follow(self, world: Plane, starts: npt.ArrayLike, outside: np.random.Generator) -> Episodes:
+        """The best actions from each start (E, 2), nothing learnt; ties by a state of its own.
+
+        Raises:
+            LearnerError: the world has other actions or inputs.
+        """
+        self._fits(world)
+        places = self._checked(np.asarray(starts, np.float64))
+        told = np.zeros((len(places), 3))
+        ties, longest = np.random.default_rng(0), self.config.longest
+        episodes.follow(world.square, self.bodies, places, longest, told, ties, outside)
+        return _told(told, np.full(len(places), len(self.bodies.lower)))
+
+    def decide(self, inputs: npt.ArrayLike) -> tuple[Integers, Array]:
+        """The best actions (T,) at places (T, n), and what all are expected to lead to (T, A).
+
+        What is unknown is expected to lead to -inf, and where nothing is known any action is best.
+
+        Raises:
+            LearnerError: not n finite numbers each.
+        """
+        x = self._checked(np.asarray(inputs, np.float64))
+        actions, worth = np.zeros(len(x), np.int64), np.zeros((len(x), self.actions))
+        voting.decide(self.bodies, x, actions, worth, np.random.default_rng(0))
+        return actions, worth
+
+    def rules(self) -> RuleTable:
+        """What it knows, a rule for each body and action; a prediction is a discounted reward.
+
+        A rule is right as often as its body has memories of the action: it expects their mean.
+        """
+        kept = min(int(self.land.seen[0]), len(self.land.action))
+        places = self.land.x[:kept]
+        low, high = (places.min(axis=0), places.max(axis=0)) if kept else (0.0, 1.0)
+        n = self.bodies.lower.shape[1]
+        low, high = np.broadcast_to(low, n).astype(float), np.broadcast_to(high, n).astype(float)
+        body, action = np.nonzero(self.bodies.meals)
+        return RuleTable(
+            actions=self.actions,
+            action=action,
+            lower=np.clip(self.bodies.lower, low, high)[body],
+            upper=np.clip(self.bodies.upper, low, high)[body],
+            prediction=self.bodies.expected[body, action],
+            weight=np.ones(len(body)),
+            right=self.bodies.meals[body, action],
+            wrong=np.zeros(len(body), np.int64),
+            low=low,
+            high=high,
+        )
+
+    def _run_compiled(
+        self, world: Plane, told: Array, done: int, outside: np.random.Generator
+    ) -> int:
+        return int(
+            episodes.learn(
+                world.square,
+                self.land,
+                self.bodies,
+                self._numbers(),
+                self.due,
+                done,
+                told,
+                self.chance,
+                outside,
+            )
+        )
+
+    def _one_episode(self, world: World, outside: np.random.Generator) -> tuple[int, float, bool]:
+        x, returned = world.reset(outside), 0.0
+        for steps in range(1, self.config.longest + 1):
+            after, reward, done = world.step(x, self.act(x), outside)
+            returned += reward
+            if done:
+                self.learn(reward, after, done=True)
+                return steps, returned, True
+            self.learn(reward, after, done=False)
+            x = after
+        return self.config.longest, returned, False
+
+    def _numbers(self) -> Numbers:
+        c = self.config
+        return Numbers(c.explore, c.discount, c.fed, c.families, c.generations, c.longest)
+
+    def _fits(self, world: World) -> None:
+        n = self.bodies.lower.shape[1]
+        if (world.actions, world.inputs) != (self.actions, n):
+            raise LearnerError(
+                f"the world has {world.actions} actions and {world.inputs} inputs, "
+                f"the learner {self.actions} and {n}"
+            )
+
+    def _checked(self, inputs: Array) -> Array:
+        x = np.ascontiguousarray(inputs, np.float64)
+        n = self.bodies.lower.shape[1]
+        if x.ndim != 2 or x.shape[1] != n:
+            raise LearnerError(f"an input is {n} numbers, and not of shape {x.shape[1:]}")
+        if not np.isfinite(x).all():
+            row = int(np.flatnonzero(~np.isfinite(x).all(axis=1))[0])
+            raise LearnerError(f"input {row} is not finite: {x[row].tolist()}")
+        return x
+
+
+def _told(told: Array, bodies: Integers) -> Episodes:
+    return Episodes(told[:, 0].astype(np.int64), told[:, 1], told[:, 2] > 0.0, bodies)
+
+
+def _empty_land(memories: int, inputs: int) -> Land:
+    return Land(
+        x=np.zeros((memories, inputs)),
+        action=np.zeros(memories, np.int64),
+        reward=np.zeros(memories),
+        after=np.zeros((memories, inputs)),
+        ends=np.zeros(memories, np.bool_),
+        seen=np.zeros(1, np.int64),
+    )
+
+
+def _one_body(actions: int, inputs: int) -> Bodies:
+    return Bodies(
+        lower=np.full((1, inputs), -np.inf),
+        upper=np.full((1, inputs), np.inf),
+        meals=np.zeros((1, actions), np.int64),
+        expected=np.zeros((1, actions)),
+        first=np.array([0, 1]),
+    )
