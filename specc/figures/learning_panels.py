@@ -111,7 +111,13 @@ def _say(axes: Axes, stated: Stated, height: float, palette: Palette) -> None:
         ha="right" if is_right else "left",
         va="center",
         fontsize=8.5,
-        arrowprops={"arrowstyle": "-", "color": palette.faint, "linewidth": 0.7, "shrinkB": 4.0},
+        arrowprops={
+            "arrowstyle": "-",
+            "color": palette.faint,
+            "linewidth": 0.7,
+            "shrinkB": 4.0,
+            "relpos": (1.0 if is_right else 0.0, 0.5),
+        },
         bbox={"boxstyle": "square,pad=0.15", "facecolor": palette.paper, "edgecolor": "none"},
         zorder=5,
     )
