@@ -1,7 +1,7 @@
 """The learners of `lcs/` beside what the thesis and others state; see docs/alcsr.md.
 
-Run it: `python -m tests.study.lcs experiments [--out FOLDER] [--at-once N]`; a run that is found in
-the folder is not made again.
+Run it: `python -m tests.study.lcs experiments [--out FOLDER] [--at-once N]`, or another name of
+`STUDIES`; a run that is found in the folder is not made again.
 """
 
 import argparse
@@ -15,7 +15,7 @@ STUDIES: Final[dict[str, Callable[[Path, int], None]]] = {
     "experiments": experiments.tell,
     "figures": pictures.draw,
     "readings": readings.tell,
-    "combinations": readings.tell_combinations,
+    "nearest": readings.tell_nearest,
 }
 
 
