@@ -8,7 +8,9 @@ if TYPE_CHECKING:
     from compiler.check import check as check
     from compiler.compile import Compiled as Compiled
     from compiler.dump import dump as dump
+    from lcs.alcsr.learner import ALCSR as ALCSR
     from lcs.estimator import ALCSRClassifier as ALCSRClassifier
+    from lcs.inputs import Input as Input
     from runtime.program import Program as Program
     from runtime.rollout import Rollout as Rollout
     from spec_schema.diagnostics import Diagnostic as Diagnostic
@@ -51,7 +53,9 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 HOMES = {
+    "ALCSR": "lcs.alcsr.learner",
     "ALCSRClassifier": "lcs.estimator",
+    "Input": "lcs.inputs",
     "Compiled": "compiler.compile",
     "Program": "runtime.program",
     "Rollout": "runtime.rollout",

@@ -196,18 +196,19 @@ def test_messages_in_the_list_of_errors_are_those_of_the_golden_files() -> None:
             assert line in printed
 
 
-def test_the_examples_of_the_python_page_print_what_they_say(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("name", ["python.md", "learning.md"])
+def test_the_examples_of_a_page_print_what_they_say(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "specs").symlink_to(ROOT / "specs")
     monkeypatch.chdir(tmp_path)
-    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / name).read_text(encoding="utf-8")
     names: dict[str, object] = {}
 
     for found in BLOCK.finditer(page):
-        exec(compile(found["text"], "python.md", "exec"), names)  # noqa: S102  our own page
+        exec(compile(found["text"], name, "exec"), names)  # noqa: S102  our own page
         printed = capsys.readouterr().out.splitlines()
-        promised = re.findall(r"  # (.*)$", found["text"], re.MULTILINE)
+        promised = re.findall(r"^ *print\(.*?\)  # (.*)$", found["text"], re.MULTILINE)
         assert not promised or printed == promised
 
 
