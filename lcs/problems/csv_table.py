@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from lcs.arrays import Array, Integers
+from lcs.arrays import Integers
+from lcs.encoding import Encoding
 from lcs.faults import LearnerError
 from lcs.inputs import Input
 from lcs.problems.table import Table
@@ -20,7 +21,8 @@ MOST_NAMES: Final = 64
 def read_table(path: Path, target: str | None = None, without: Sequence[str] = ()) -> Table:
     """The table in a CSV file; all its rows are to learn from and to test on, until it is split.
 
-    A column of numbers is an input with a range, a column of words one with named values.
+    A column of numbers is an input with a range; of a column of words each word is an input, which
+    is 1 where it stands and else 0.
 
     Args:
         path: of the file, in UTF-8; fields are parted by commas, semicolons or tabs.
@@ -41,10 +43,10 @@ def read_table(path: Path, target: str | None = None, without: Sequence[str] = (
     used = [name for name in names if name not in {target, *without}]
     if not used:
         raise LearnerError("no column is left to decide by: the inputs stand beside the class")
-    read = [_input(name, columns[name], lines) for name in used]
+    encoding = Encoding(tuple(_input(name, columns[name], lines) for name in used))
+    x = encoding.encoded({name: columns[name] for name in used})
     all_rows = np.arange(len(rows))
-    x = np.stack([values for _, values in read], axis=1)
-    return Table(path.stem, tuple(each for each, _ in read), labels, x, right, all_rows, all_rows)
+    return Table(path.stem, encoding.columns, labels, x, right, all_rows, all_rows)
 
 
 def _cells(path: Path) -> tuple[list[str], list[int], list[list[str]]]:
@@ -101,14 +103,14 @@ def _classes(name: str, column: list[str], lines: list[int]) -> tuple[tuple[str,
     return tuple(labels), np.array([place[cell] for cell in column])
 
 
-def _input(name: str, column: list[str], lines: list[int]) -> tuple[Input, Array]:
-    """What a column is, and its values: numbers, or places in the list of its words."""
+def _input(name: str, column: list[str], lines: list[int]) -> Input:
+    """What a column is: numbers in a range, or one of a few words."""
     _refuse_gaps(name, column, lines)
     numbers = [_number(cell) for cell in column]
     missing = [i for i, number in enumerate(numbers) if number is None]
     if not missing:
         values = np.array(numbers, np.float64)
-        return Input(name, low=float(values.min()), high=float(values.max())), values
+        return Input(name, low=float(values.min()), high=float(values.max()))
     if 2 * len(missing) < len(numbers):
         i = missing[0]
         raise LearnerError(
@@ -121,8 +123,7 @@ def _input(name: str, column: list[str], lines: list[int]) -> tuple[Input, Array
             f"'{name}' has {len(words)} different words, and {MOST_NAMES} are the most that an "
             "input may have; leave the column out"
         )
-    place = {word: float(i) for i, word in enumerate(words)}
-    return Input(name, values=tuple(words)), np.array([place[cell] for cell in column])
+    return Input(name, values=tuple(words))
 
 
 def _refuse_gaps(name: str, column: list[str], lines: list[int]) -> None:

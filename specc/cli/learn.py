@@ -29,6 +29,7 @@ class LearnerName(StrEnum):
 
     ALCSR = "alcsr"
     THESIS = "thesis"
+    XCSR = "xcsr"
 
 
 @final
@@ -203,17 +204,18 @@ def _run(
 ) -> Status:
     from specc.learning.experiment import config_of, problem_of
     from specc.learning.folder import begin_in
-    from specc.learning.learning import Stopped
-    from specc.learning.learning import learn as learnt_by
+    from specc.learning.learning import Stopped, concluded, learnt_from
 
     made, config = problem_of(experiment), config_of(experiment)
     if output is not None and is_new:
         begin_in(output, experiment)
     warmed_learner(experiment.learner)
     with postponed() as wanted, progress_bar(made.name) as bar:
-        learnt = learnt_by(experiment, made, config, output, tell=bar, shall_stop=wanted.is_set)
-    if isinstance(learnt, Stopped):
-        return _stopped(learnt, output)
+        runs = learnt_from(experiment, made, config, output, tell=bar, shall_stop=wanted.is_set)
+    if isinstance(runs, Stopped):
+        return _stopped(runs, output)
+    with progress_bar(made.name) as bar:
+        learnt = concluded(experiment, made, runs, bar)
     if output is not None:
         _write(learnt, output, style)
     _tell(learnt, form)

@@ -4,11 +4,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Protocol, final
 
-from lcs.alcsr.config import Config
+import numpy as np
+
+from lcs.alcsr import config as alcsr
+
 from lcs.alcsr.learner import ALCSR
+from lcs.arrays import Array
 from lcs.course import Learner
 from lcs.problems.problem import Problem
 from lcs.state import Saved
+from lcs.xcsr import config as xcsr
+from lcs.xcsr.learner import XCSR
 
 
 class Kept(Learner, Saved, Protocol):
@@ -22,20 +28,35 @@ class Known:
 
     about: str
     config: Any
-    make: Callable[[int, int, Any, int], Kept]
+    make: Callable[[Problem, Any, int], Kept]
 
 
-def _alcsr(actions: int, inputs: int, config: Config, seed: int) -> Kept:
-    return ALCSR(actions, inputs, config, seed=seed)
+def _alcsr(problem: Problem, config: alcsr.Config, seed: int) -> Kept:
+    return ALCSR(problem.classes, problem.inputs, config, seed=seed)
+
+
+def _xcsr(problem: Problem, config: xcsr.Config, seed: int) -> Kept:
+    low, high = ranges_of(problem)
+    return XCSR(problem.classes, problem.inputs, config, low=low, high=high, seed=seed)
+
+
+def ranges_of(problem: Problem) -> tuple[Array, Array]:
+    """The least and the most of each input (n,): as declared, or from 0 to 1."""
+    low = [0.0 if each.low is None else each.low for each in problem.described]
+    high = [1.0 if each.high is None else each.high for each in problem.described]
+    return np.array(low), np.array(high)
 
 
 LEARNERS: Final[Mapping[str, Known]] = {
-    "alcsr": Known("artificial life, with all that goes beyond the thesis", Config(), _alcsr),
-    "thesis": Known("artificial life, to the letter of the thesis's chapter 4", Config(), _alcsr),
+    "alcsr": Known("artificial life, with all that goes beyond the thesis", alcsr.Config(), _alcsr),
+    "thesis": Known(
+        "artificial life, to the letter of the thesis's chapter 4", alcsr.Config(), _alcsr
+    ),
+    "xcsr": Known("accuracy-based fitness (Wilson 2000), the usual peer", xcsr.Config(), _xcsr),
 }
 """In the order in which they are listed."""
 
 
 def learner_for(problem: Problem, name: str, config: Any, seed: int) -> Kept:
     """A learner that knows nothing yet, with as many inputs and actions as the problem."""
-    return LEARNERS[name].make(problem.classes, problem.inputs, config, seed)
+    return LEARNERS[name].make(problem, config, seed)

@@ -39,7 +39,7 @@ class Stopped:
     done: int
 
 
-def learn(
+def learnt_from(
     experiment: Experiment,
     problem: Problem,
     config: Any,
@@ -47,8 +47,8 @@ def learn(
     *,
     tell: Callable[[str, int, int], None],
     shall_stop: Callable[[], bool],
-) -> Learnt | Stopped:
-    """Run an experiment, or what is left of it.
+) -> tuple[Run, ...] | Stopped:
+    """All runs of an experiment, or what is left of them.
 
     Args:
         experiment: what is run. problem, config: what its names mean.
@@ -82,13 +82,13 @@ def learn(
         if run.done < experiment.cycles:
             return Stopped(experiment, seed, run.done)
         runs.append(run)
-    return _concluded(experiment, problem, runs, tell)
+    return tuple(runs)
 
 
-def _concluded(
+def concluded(
     experiment: Experiment,
     problem: Problem,
-    runs: list[Run],
+    runs: tuple[Run, ...],
     tell: Callable[[str, int, int], None],
 ) -> Learnt:
     """What came of runs that are done."""
@@ -100,7 +100,7 @@ def _concluded(
         figures = figures_of(few.table, run, problem, experiment.tests)
         compacted.append(few)
         summaries.append(summed_up(run, problem, experiment.tests, figures))
-    return Learnt(experiment, problem, tuple(runs), tuple(compacted), tuple(summaries))
+    return Learnt(experiment, problem, runs, tuple(compacted), tuple(summaries))
 
 
 def _taken_up_or_begun(

@@ -8,6 +8,7 @@ from lcs.problems.problem import Problem
 from lcs.rules.compaction import Compacted, compact
 from lcs.rules.deciding import decide
 from lcs.rules.experience import Experience, remembered
+from lcs.rules.names import Names
 from lcs.rules.table import RuleTable
 from specc.learning.running import BLOCK, Run, block, fresh
 from specc.learning.summary import Thinned
@@ -41,6 +42,11 @@ def figures_of(small: RuleTable, run: Run, problem: Problem, count: int) -> Thin
     """How few they are, and how right on fresh problems; uncovered ones count as wrong."""
     x, classes = fresh(problem, run.seed, count)
     return Thinned(len(small), float(np.mean(decide(small, x).best == classes)))
+
+
+def names_of(problem: Problem) -> Names:
+    """What inputs and actions are called in rules."""
+    return Names(problem.described, problem.labels)
 
 
 def _noise(problem: Problem) -> float:

@@ -11,6 +11,9 @@ import numpy as np
 
 from lcs.course import Course
 from lcs.curves import curve_of, over_last
+from lcs.rules.as_csv import as_csv
+from lcs.rules.as_json import as_record
+from lcs.rules.words import in_words
 from lcs.saving import as_bytes
 from specc.figures.style_names import Style
 from specc.files import json_bytes, write_atomically
@@ -18,6 +21,7 @@ from specc.learning.folder import run_folder
 from specc.learning.learning import Learnt
 from specc.learning.pictures import pictures
 from specc.learning.running import WINDOW, Run
+from specc.learning.thinning import names_of
 from specc.texts.learning import learning_record, learning_text
 
 COLUMNS: Final = (
@@ -42,7 +46,7 @@ def write_all(
         SpecError: one can't be written (V347).
     """
     written: list[str] = []
-    count = 2 + 3 * len(learnt.runs) + 2
+    count = 2 + 7 * len(learnt.runs) + 2
     for path, content in _files(learnt, folder, style):
         name = path.relative_to(folder).as_posix()
         tell(f"writing {name}", len(written), count)
@@ -60,6 +64,14 @@ def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, b
         yield inside / "learner.npz", as_bytes(run.learner.state())
         yield inside / "curve.csv", _csv(run)
         yield inside / "course.npz", _npz(run)
+    for run, compacted in zip(learnt.runs, learnt.compacted, strict=True):
+        inside, names = run_folder(folder, run.seed), names_of(learnt.problem)
+        few = compacted.table
+        text = "".join(f"{each}\n" for each in in_words(few, names))
+        yield inside / "rules.txt", text.encode()
+        yield inside / "rules.csv", as_csv(few, names).encode()
+        yield inside / "rules.json", json_bytes(as_record(few, names))
+        yield inside / "all_rules.csv", as_csv(run.learner.rules(), names).encode()
     for name, content in pictures(learnt, style):
         yield folder / name, content
 

@@ -17,15 +17,15 @@ def written(folder: Path, text: str) -> Path:
     return path
 
 
-def test_numbers_are_inputs_with_a_range_and_words_inputs_with_values(tmp_path: Path) -> None:
+def test_numbers_are_inputs_with_a_range_and_each_word_is_an_input(tmp_path: Path) -> None:
     path = written(tmp_path, "distance,floor,does\n0.5,wood,stop\n2,wool,go\n\n 1.5 , wood ,go\n")
 
     table = read_table(path)
 
-    distance, floor = table.described
+    distance, wood, wool = table.described
     assert (distance.name, distance.low, distance.high) == ("distance", 0.5, 2.0)
-    assert (floor.name, floor.values) == ("floor", ("wood", "wool"))
-    assert table.x.tolist() == [[0.5, 0.0], [2.0, 1.0], [1.5, 0.0]]
+    assert (wood.name, wool.name) == ("floor is wood", "floor is wool")
+    assert table.x.tolist() == [[0.5, 1.0, 0.0], [2.0, 0.0, 1.0], [1.5, 1.0, 0.0]]
     assert table.labels == ("go", "stop")
     assert table.right.tolist() == [1, 0, 0]
 

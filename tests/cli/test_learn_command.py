@@ -1,0 +1,207 @@
+"""`specc learn` as a user runs it: results, files, what it refuses, and what it lists."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lcs.problems.registry import PROBLEMS
+from lcs.saving import load
+from specc.cli import main
+from specc.cli.learn import LearnerName
+from specc.learning.learners import LEARNERS
+
+QUICK = ["--cycles", "2500", "--tests", "500"]
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of an experiment of two runs."""
+    folder = tmp_path_factory.mktemp("kept") / "out"
+    asked = ["learn", "checkerboard_3x3", *QUICK, "--runs", "2", "--seed", "4", "-o", str(folder)]
+    assert main(asked) == 0
+    return folder
+
+
+def result(capsys: pytest.CaptureFixture[str]) -> Any:
+    """What standard output holds, as JSON."""
+    return json.loads(capsys.readouterr().out)
+
+
+def test_without_a_folder_only_results_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["learn", "checkerboard_3x3", *QUICK]) == 0
+
+    out = capsys.readouterr().out
+    assert out.startswith("checkerboard_3x3 by alcsr: a run of 2,500 cycles\n")
+    assert "of 500 fresh problems" in out
+    assert list(Path().iterdir()) == []
+
+
+def test_a_folder_holds_curves_figures_learners_and_the_summary(kept: Path) -> None:
+    names = {path.relative_to(kept).as_posix() for path in kept.rglob("*") if path.is_file()}
+
+    assert names >= {
+        "experiment.json", "summary.txt", "summary.json", "learning.svg", "population.svg",
+        *(
+            f"seed_{seed}/{name}"
+            for seed in (4, 5)
+            for name in ("checkpoint.npz", "course.npz", "curve.csv", "learner.npz")
+        ),
+    }  # fmt: skip
+
+
+def test_the_figures_of_the_summary_follow_from_the_files_beside_it(kept: Path) -> None:
+    for run in json.loads((kept / "summary.json").read_text())["runs"]:
+        folder = kept / f"seed_{run['seed']}"
+        with (folder / "curve.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        course = np.load(folder / "course.npz")
+        is_test = course["kind"] == 0
+
+        assert run["cycles"] == len(course["kind"]) == 2_500
+        assert run["tried"] == 2_500 - len(rows) == (~is_test).sum()
+        right = [int(row["right"]) for row in rows]
+        assert right == (course["action"] == course["right"])[is_test].tolist()
+        assert run["performance"] == np.mean(right)
+        assert float(rows[-1]["performance"]) == pytest.approx(np.mean(right[-50:]))
+        assert (run["rules"], run["most_rules"]) == (course["rules"][-1], course["rules"].max())
+        assert run["births"] - run["deaths"] == run["rules"]
+        assert len(load(folder / "learner.npz").rules()) == run["rules"]
+
+
+def test_fresh_problems_where_an_action_has_no_rule_count_as_wrong(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked = ["learn", "checkerboard_5x5", "--cycles", "30", "--tests", "2000", "--format", "json"]
+    assert main(asked) == 0
+    [run] = result(capsys)["runs"]
+
+    assert run["uncovered"] > 0.0
+    assert run["accuracy"] <= 1.0 - run["uncovered"]
+
+
+def test_equal_seeds_give_equal_results_and_others_do_not(
+    kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["learn", "checkerboard_3x3", *QUICK, "--seed", "5", "--format", "json"]) == 0
+    [again] = result(capsys)["runs"]
+    one, other = json.loads((kept / "summary.json").read_text())["runs"]
+
+    assert timeless(again) == timeless(other)
+    assert timeless(again) != timeless(one)
+
+
+def timeless(run: dict[str, Any]) -> dict[str, Any]:
+    """A run's figures without those of the clock."""
+    return {name: value for name, value in run.items() if name not in {"seconds", "per_second"}}
+
+
+def test_constants_and_what_the_problem_is_made_with_can_be_set(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked = ["learn", "multiplexer_6", *QUICK, "--learner", "thesis", "--format", "json"]
+    asked += ["--with", "thresholds=0.25,0.75", "--with", "flipped=0.1", "--explore", "0.5"]
+    assert (
+        main([*asked, "--set", "mutation_is=always", "--set", "readings.corpse_rate=shrunk"]) == 0
+    )
+    found = result(capsys)
+
+    assert found["experiment"]["settings"] == {
+        "mutation_is": "always",
+        "readings.corpse_rate": "shrunk",
+        "explore": "0.5",
+    }
+    # A forced cycle is no test, so there are at most half.
+    assert 1_250 - 200 < found["runs"][0]["tried"] - 0 < 2_500
+
+
+def test_a_table_is_learnt_and_tested_on_rows_it_has_not_seen(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    x = np.random.default_rng(0).random((200, 2))
+    rows = [f"{i},{a:.3f},{b:.3f},{'go' if a > 0.5 else 'stop'}" for i, (a, b) in enumerate(x)]
+    Path("rows.csv").write_text("\n".join(["t,near,far,does", *rows]) + "\n")
+
+    assert main(["learn", "rows.csv", "--with", "without=t", *QUICK, "--format", "json"]) == 0
+    [run] = result(capsys)["runs"]
+
+    assert run["fresh"] == 50
+    assert run["accuracy"] > 0.7
+
+
+@pytest.mark.parametrize(
+    ("asked", "code", "said"),
+    [
+        (["multiplxer_6"], "V401", "did you mean 'multiplexer_6'?"),
+        (["nothing_like_it"], "V401", "`specc learn --list` lists them"),
+        (["experiment_1", "--set", "mutat=1"], "V341", "did you mean 'mutate'?"),
+        (["experiment_1", "--set", "damaged=1"], "V341", "did you mean 'damaged_"),
+        (["experiment_1", "--set", "mutate=often"], "V342", "'often' is no number"),
+        (["experiment_1", "--set", "mutate=nan"], "V342", "'nan' is not finite"),
+        (["experiment_1", "--set", "corpses=2.5"], "V342", "'2.5' is no whole number"),
+        (["experiment_1", "--set", "order=die"], "V342", "write die_fight_breed or"),
+        (["experiment_1", "--with", "flips=0.1"], "V341", "there are thresholds, flipped"),
+        (["experiment_1", "--with", "flipped=2"], "V402", "write one from 0 to 1"),
+        (["scitos_2", "--with", "tested=9"], "V402", "part 9 of 4"),
+    ],
+)  # fmt: skip
+def test_what_can_not_be_learnt_is_told_with_what_to_write(
+    asked: list[str], code: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["learn", *asked, "-o", "out"]) == 2
+
+    told = capsys.readouterr().err
+    assert f"error[{code}]" in told
+    assert said in told
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ([], "PROBLEM is missing"),
+        (["--resume"], "name the folder"),
+        (["experiment_1", "--explore", "0.5", "--set", "explore=0.4"], "leave one out"),
+        (["experiment_1", "--set", "mutate"], "write NAME=VALUE"),
+        (["experiment_1", "--learner", "xcs"], "'xcs' is not one of"),
+        (["nowhere.csv"], "nowhere.csv: no such file"),
+    ],
+)
+def test_a_wrong_use_of_the_command_is_told(
+    asked: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["learn", *asked]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_mistake_in_a_table_is_told_with_its_line(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("rows.csv").write_text("distance,does\n1,go\nnear,stop\n2,go\n3,go\n")
+
+    assert main(["learn", "rows.csv"]) == 2
+    assert (
+        "rows.csv: error[V402]: line 3: 'distance' is 'near', where most rows have a number; "
+        "leave the row out, or write a finite number" in capsys.readouterr().err
+    )
+
+
+def test_everything_that_can_be_written_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["learn", "--list"]) == 0
+    text = capsys.readouterr().out
+    assert main(["learn", "--list", "--format", "json"]) == 0
+    found = result(capsys)
+
+    assert found["problems"].keys() == PROBLEMS.keys()
+    assert found["learners"].keys() == LEARNERS.keys() == {each.value for each in LearnerName}
+    for name in (*found["problems"], *found["learners"], *found["constants"]):
+        assert f"  {name} " in text
+    for problem in found["problems"].values():
+        for name in problem["with"]:
+            assert f"  {name} " in text
