@@ -80,11 +80,13 @@ study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs experiments
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs figures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs readings
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.xcsr
 
-bench: .venv/ready ## table lookup and the decoding of logs beside their peers, in one run
+bench: .venv/ready ## table lookup, the decoding of logs and learning beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(BIN)/python tests/bench/lookup.py
 	$(BIN)/python tests/bench/decode.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench.lcs
 
 bench-large: .venv/ready ## memory and time on a log of 2 GB, which is made in out/
 	$(BIN)/python tests/study/large_log.py
