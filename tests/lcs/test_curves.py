@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lcs.arrays import Integers
 from lcs.course import Course, Kind
 from lcs.curves import curve_of, over_last, tries_of
-from tests.study.lcs.measures import performance
+from tests.study.lcs.measures import NEAR, counted_near, performance
 
 
 def course_of(kinds: list[int], actions: Integers) -> Course:
@@ -55,3 +55,12 @@ def test_performance_counts_the_tests_up_to_a_number_of_explore_problems() -> No
     assert performance(curve, 20, 10) == 9 / 10
     assert performance(curve, 60, 50) == 49 / 50
     assert np.isnan(performance(curve, 61, 50))
+
+
+def test_tests_near_a_number_of_explore_problems_are_those_on_both_sides_of_it() -> None:
+    kinds = [Kind.TRIED, Kind.TEST] * 5_000
+    right = np.zeros(10_000, np.int64)
+    actions = (np.arange(10_000) // 2 + 1 > 3_000).astype(np.int64)  # wrong from 3,001 on
+    curve = curve_of(course_of(list(kinds), actions), right)
+
+    assert counted_near(curve, 2_500) == (1_750, 2 * NEAR)

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from lcs.alcsr.config import Config
-from tests.study.lcs.measures import LAST, PLACES, Measured, measured, spread
+from tests.study.lcs.measures import LAST, NEAR, PLACES, Measured, measured, spread
 from tests.study.lcs.runs import FRESH, Wanted, all_made
 from tests.study.lcs.tables import percent, row
 
@@ -48,7 +48,8 @@ def tell(folder: Path, at_once: int) -> None:
         for seed, each in sorted(runs, key=lambda one: one[0]):
             print(row([str(seed), *_cells(each)]))
         print(row(["mean", *_together([each for _, each in runs])]))
-        print(row(["mean over the last 50", *_last_fifty([each for _, each in runs])]), flush=True)
+        print(row(["mean over the last 50", *_last_fifty([each for _, each in runs])]))
+        print(row([f"all tests within {NEAR:,}", *_near([each for _, each in runs])]), flush=True)
 
 
 def _cells(run: Measured) -> list[str]:
@@ -85,3 +86,13 @@ def _together(runs: list[Measured]) -> list[str]:
 def _last_fifty(runs: list[Measured]) -> list[str]:
     at = [float(np.mean([run.of_50[k] for run in runs])) for k in range(len(PLACES))]
     return [*map(percent, at), *[""] * 7]
+
+
+def _near(runs: list[Measured]) -> list[str]:
+    """All runs' tests around each place, with half the width of the 95 % interval."""
+    cells = []
+    for k in range(len(PLACES)):
+        right, count = (sum(run.near[k][part] for run in runs) for part in (0, 1))
+        share = right / count
+        cells.append(f"{percent(share)} ± {percent(1.96 * np.sqrt(share * (1 - share) / count))}")
+    return [*cells, *[""] * 7]

@@ -12,6 +12,9 @@ from tests.study.lcs.runs import Run
 PLACES: Final = (10_000, 15_000, 35_000, 50_000)
 """Explore problems after which the thesis, or its readings, state a performance."""
 
+NEAR: Final = 1_250
+"""The last 1,000 tests reach back 10,000 explore problems: too far where learning is quick."""
+
 LAST: Final = 10_000
 """Tests at the end of a run."""
 
@@ -22,7 +25,8 @@ class Measured:
     """A run in numbers.
 
     of_1000, of_50: the share of right tests, of so many, at each of `PLACES`; NaN where it never
-    came so far. last: right ones of the last `LAST` tests, of fewer where there were fewer.
+    came so far. near: the tests within `NEAR` explore problems of each: right ones, and how many.
+    last: right ones of the last `LAST` tests, of fewer where there were fewer.
     fresh: the share of fresh problems, with inputs that no rule covers as wrong.
     peak, peak_at: the most rules, and after how many explore problems. final: rules at the end.
     cycles: how many there were.
@@ -30,6 +34,7 @@ class Measured:
 
     of_1000: tuple[float, ...]
     of_50: tuple[float, ...]
+    near: tuple[tuple[int, int], ...]
     last: int
     fresh: float
     peak: int
@@ -49,6 +54,7 @@ def measured(run: Run, fresh: int) -> Measured:
     return Measured(
         of_1000=tuple(performance(curve, place, 1000) for place in PLACES),
         of_50=tuple(performance(curve, place, 50) for place in PLACES),
+        near=tuple(counted_near(curve, place) for place in PLACES),
         last=int(np.sum(curve.right[-LAST:])),
         fresh=run.fresh / fresh,
         peak=int(course.rules[top]),
@@ -66,6 +72,12 @@ def performance(curve: Curve, tries: int, window: int) -> float:
     if not curve.tries.size or curve.tries[-1] < tries:
         return float("nan")
     return float(over_last(curve.right, window)[curve.until(tries) - 1])
+
+
+def counted_near(curve: Curve, tries: int) -> tuple[int, int]:
+    """The right tests within `NEAR` explore problems, and how many there were."""
+    right = curve.right[curve.until(tries - NEAR) : curve.until(tries + NEAR)]
+    return int(np.sum(right)), len(right)
 
 
 def spread(values: Sequence[float]) -> tuple[float, float, float]:
