@@ -75,10 +75,10 @@ def conditions(table: RuleTable, rule: int, names: Names) -> list[str]:
 
 def _condition(each: Input, lower: float, upper: float, low: float, high: float) -> str:
     if each.values:
-        return _of_values(each, lower, upper, high)
+        return values_text(each, lower, upper, high)
     unit = f" {each.unit}" if each.unit else ""
-    least, is_open = _bound(lower)
-    most, is_closed = _bound(upper)
+    least, is_open = bound_text(lower)
+    most, is_closed = bound_text(upper)
     below = f"{'<=' if is_closed else '<'} {most}{unit}"
     if lower <= low:
         return f"{each.name} {below}"
@@ -87,7 +87,7 @@ def _condition(each: Input, lower: float, upper: float, low: float, high: float)
     return f"{least}{unit} {'<' if is_open else '<='} {each.name} {below}"
 
 
-def _bound(value: float) -> tuple[str, bool]:
+def bound_text(value: float) -> tuple[str, bool]:
     """A bound as text, and whether it stands right above the number that the text says."""
     below = just_below(value)
     return (number(value), False) if below is None else (number(below), True)
@@ -98,13 +98,18 @@ def number(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
-def _of_values(each: Input, lower: float, upper: float, high: float) -> str:
-    """Which values a condition on their indices allows; "" where all."""
-    allowed = [
+def allowed_values(each: Input, lower: float, upper: float, high: float) -> list[str]:
+    """Which values of a discrete input a condition on their indices allows."""
+    return [
         value
         for k, value in enumerate(each.values)
         if lower <= k and (k < upper or k == upper == high)
     ]
+
+
+def values_text(each: Input, lower: float, upper: float, high: float) -> str:
+    """What a condition on a discrete input says; "" where it allows all."""
+    allowed = allowed_values(each, lower, upper, high)
     if each.values == YES_OR_NO and len(allowed) == 1:
         return each.name if allowed == ["yes"] else _negated(each.name)
     barred = [value for value in each.values if value not in allowed]
