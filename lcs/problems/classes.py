@@ -35,8 +35,8 @@ class Classes:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """The numbers of the classes."""
-        return tuple(str(each) for each in range(self.classes))
+        """class 0, class 1 and so on."""
+        return tuple(f"class {each}" for each in range(self.classes))
 
     def drawn(self, count: int, chance: np.random.Generator) -> tuple[Array, Array, Integers]:
         """So many inputs (T, n), the rewards of all classes (T, A) and the right ones (T,)."""

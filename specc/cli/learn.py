@@ -239,7 +239,8 @@ def _write(learnt: "Learnt", output: Path, style: Style) -> None:
 
     with progress_bar(learnt.problem.name) as bar:
         names = write_all(learnt, output, style, bar)
-    say(f"wrote {len(names)} files into {output}: {', '.join(names)}", "bold")
+    first = ", ".join(name for name in names if "/" not in name)
+    say(f"wrote {len(names)} files into {output}: {first}, and of each run its own", "bold")
 
 
 def _tell(learnt: "Learnt", form: Format) -> None:

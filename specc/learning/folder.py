@@ -77,7 +77,12 @@ def continued(folder: Path, kept: Experiment, cycles: int | None) -> Experiment:
 
 def run_folder(folder: Path, seed: int) -> Path:
     """Where the run of a seed is kept."""
-    return folder / f"seed_{seed}"
+    return folder / run_name(seed)
+
+
+def run_name(seed: int) -> str:
+    """The folder of a run in that of its experiment."""
+    return f"seed_{seed}"
 
 
 def checkpoint(folder: Path, seed: int) -> Path:

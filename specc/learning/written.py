@@ -19,9 +19,9 @@ from specc.figures.style_names import Style
 from specc.files import json_bytes, write_atomically
 from specc.learning.folder import run_folder
 from specc.learning.learning import Learnt
-from specc.learning.pictures import pictures
+from specc.learning.pictures import count_of, pictures
 from specc.learning.running import WINDOW, Run
-from specc.learning.thinning import names_of
+from specc.learning.thinning import names_of, seen_by
 from specc.texts.learning import learning_record, learning_text
 
 COLUMNS: Final = (
@@ -46,7 +46,7 @@ def write_all(
         SpecError: one can't be written (V347).
     """
     written: list[str] = []
-    count = 2 + 7 * len(learnt.runs) + 2
+    count = 2 + 7 * len(learnt.runs) + count_of(learnt)
     for path, content in _files(learnt, folder, style):
         name = path.relative_to(folder).as_posix()
         tell(f"writing {name}", len(written), count)
@@ -67,7 +67,8 @@ def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, b
     for run, compacted in zip(learnt.runs, learnt.compacted, strict=True):
         inside, names = run_folder(folder, run.seed), names_of(learnt.problem)
         few = compacted.table
-        text = "".join(f"{each}\n" for each in in_words(few, names))
+        seen = seen_by(run, learnt.problem).inputs
+        text = "".join(f"{each}\n" for each in in_words(few, names, seen))
         yield inside / "rules.txt", text.encode()
         yield inside / "rules.csv", as_csv(few, names).encode()
         yield inside / "rules.json", json_bytes(as_record(few, names))

@@ -1,14 +1,19 @@
 """What came of an experiment of learners, as text for people and as a record for programs."""
 
 from dataclasses import asdict
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
+from lcs.rules.words import in_words
 from specc.learning.experiment import record_of
 from specc.learning.learning import Learnt
 from specc.learning.summary import Summary
-from verifier.report.layout import INDENT, section, table
+from specc.learning.thinning import names_of, seen_by
+from verifier.report.layout import INDENT, bullets, section, table
+
+MOST_RULES: Final = 16
+"""So many are printed; more are in files."""
 
 
 def learning_text(learnt: Learnt) -> str:
@@ -16,7 +21,24 @@ def learning_text(learnt: Learnt) -> str:
     experiment = learnt.experiment
     runs = "a run" if len(learnt.runs) == 1 else f"{len(learnt.runs)} runs"
     head = f"{learnt.problem.name} by {experiment.learner}: {runs} of {experiment.cycles:,} cycles"
-    return "\n\n".join([head, *(_run_text(each) for each in learnt.summaries), *_mean_text(learnt)])
+    runs_text = [_run_text(each) for each in learnt.summaries]
+    return "\n\n".join([head, *runs_text, *_mean_text(learnt), *_rules_text(learnt)])
+
+
+def _rules_text(learnt: Learnt) -> list[str]:
+    """The rules of the first run that choose an action, where they are few enough to be read."""
+    few, names = learnt.compacted[0].table, names_of(learnt.problem)
+    choosing = few.prediction == few.prediction.max(initial=-np.inf)
+    if not 0 < choosing.sum() <= MOST_RULES:
+        return []
+    inputs = seen_by(learnt.runs[0], learnt.problem).inputs
+    said = [str(each) for each in in_words(few, names, inputs) if choosing[each.rule]]
+    return [
+        section(
+            f"rules that choose an action, after compaction (seed {learnt.runs[0].seed})",
+            [bullets(said)],
+        )
+    ]
 
 
 def _run_text(one: Summary) -> str:

@@ -16,7 +16,7 @@ from sklearn.tree import DecisionTreeClassifier
 
 from lcs.alcsr.config import GROWN
 from lcs.alcsr.learner import ALCSR
-from lcs.arrays import Array, Integers
+from lcs.arrays import Integers
 from lcs.problems.scitos import scitos
 from lcs.problems.table import Table, in_folds
 from lcs.rules.compaction import compact
@@ -34,8 +34,9 @@ PEER: Final = Config(bounds=Bounds.UNORDERED, selection=Selection.TOURNAMENT, ex
 REMEMBERED: Final = 10_000
 """Of the last cycles, what compaction goes by."""
 
-Score: TypeAlias = tuple[float, int]
-"""The share of rows that were decided right, and how many rules (or leaves) did so."""
+Score: TypeAlias = tuple[float, float, int]
+"""The shares of rows that were decided right and that were not decided, and how many rules (or
+leaves) there were."""
 
 
 class Study(Protocol):
@@ -44,9 +45,10 @@ class Study(Protocol):
     def __call__(self, table: Table, cycles: int, seed: int) -> dict[str, Score]: ...
 
 
-def score(actions: Integers, table: Table) -> float:
-    """The share of the rows to test on that were decided right; no decision is wrong."""
-    return float(np.mean(actions == table.right[table.tested]))
+def score(actions: Integers, table: Table, rules: int) -> Score:
+    """Of the rows to test on; where some action has no rule, none is taken, and that is wrong."""
+    right = actions == table.right[table.tested]
+    return float(np.mean(right)), float(np.mean(actions < 0)), rules
 
 
 def tree(table: Table, cycles: int, seed: int) -> dict[str, Score]:  # noqa: ARG001
@@ -54,7 +56,7 @@ def tree(table: Table, cycles: int, seed: int) -> dict[str, Score]:  # noqa: ARG
     found = DecisionTreeClassifier(random_state=seed)
     found.fit(table.x[table.learnt], table.right[table.learnt])
     leaves = int(found.get_n_leaves())
-    return {"decision tree": (score(found.predict(table.x[table.tested]), table), leaves)}
+    return {"decision tree": score(found.predict(table.x[table.tested]), table, leaves)}
 
 
 def alcsr(table: Table, cycles: int, seed: int) -> dict[str, Score]:
@@ -62,8 +64,8 @@ def alcsr(table: Table, cycles: int, seed: int) -> dict[str, Score]:
     learner, few = grown(table, cycles, seed)
     tested = table.x[table.tested]
     return {
-        "ALCSR": (score(learner.decide(tested)[0], table), len(learner.rules())),
-        "ALCSR, compacted": (score(decide(few, tested).best, table), len(few)),
+        "ALCSR": score(learner.decide(tested)[0], table, len(learner.rules())),
+        "ALCSR, compacted": score(decide(few, tested).best, table, len(few)),
     }
 
 
@@ -85,7 +87,7 @@ def xcsr(table: Table, cycles: int, seed: int) -> dict[str, Score]:
     x, rewards, _ = table.drawn(cycles, np.random.default_rng([seed, 1]))
     learner.run(x, rewards)
     actions, _ = learner.decide(table.x[table.tested])
-    return {"XCSR": (score(actions, table), len(learner.rules()))}
+    return {"XCSR": score(actions, table, len(learner.rules()))}
 
 
 def peer(table: Table, cycles: int, seed: int) -> dict[str, Score]:
@@ -98,7 +100,7 @@ def peer(table: Table, cycles: int, seed: int) -> dict[str, Score]:
     x, rewards, _ = table.drawn(cycles, chance)
     learner.learn((x - low) / (high - low), rewards, chance.integers(0, table.classes, cycles))
     actions = learner.decide((table.x[table.tested] - low) / (high - low))
-    return {"xcsf": (score(actions, table), learner.rules())}
+    return {"xcsf": score(actions, table, learner.rules())}
 
 
 STUDIES: Final[dict[str, Study]] = {"tree": tree, "alcsr": alcsr, "xcsr": xcsr, "xcsf": peer}
@@ -116,12 +118,14 @@ def measured(count: int, laps: Sequence[int], given: "Given") -> dict[str, list[
 
 
 def lines_of(count: int, found: dict[str, list[Score]]) -> Iterator[str]:
-    """Rows of the table: the last lap, the mean of all, each lap, how many rules."""
+    """Rows of the table."""
     for who, scores in found.items():
-        shares = [100.0 * share for share, _ in scores]
-        each = " ".join(f"{share:6.2f}" for share in shares)
-        rules = np.mean([rules for _, rules in scores])
-        yield f"| {count:2} | {who:16} | {shares[-1]:6.2f} | {np.mean(shares):6.2f} | {each} | {rules:5.0f} |"
+        right, undecided, rules = np.array(scores).T
+        each = " ".join(f"{100.0 * share:6.2f}" for share in right)
+        yield (
+            f"| {count:2} | {who:16} | {100.0 * right[-1]:6.2f} | {100.0 * right.mean():6.2f} "
+            f"| {each} | {100.0 * undecided.mean():5.2f} | {rules.mean():5.0f} |"
+        )
 
 
 def said(cycles: int) -> Iterator[str]:
@@ -151,7 +155,8 @@ def main() -> None:
     parser.add_argument("--cycles", type=int, default=CYCLES)
     asked = parser.parse_args()
     given = Given(tuple(asked.who), asked.cycles)
-    print("Accuracy in %, tested on the last lap; mean over laps; on each lap; rules or leaves")
+    print("| inputs | who | last lap, % right | mean of laps | each lap | undecided | rules |")
+    print("|---|---|---|---|---|---|---|")
     for count in asked.inputs:
         for line in lines_of(count, measured(count, asked.laps, given)):
             print(line, flush=True)
