@@ -35,7 +35,7 @@ class Classes:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """class 0, class 1 and so on."""
+        """Each a number: class 0, class 1 and so on."""
         return tuple(f"class {each}" for each in range(self.classes))
 
     def drawn(self, count: int, chance: np.random.Generator) -> tuple[Array, Array, Integers]:
