@@ -14,7 +14,7 @@ from lcs.rules.names import Names, names_for
 from lcs.rules.table import RuleTable
 
 FIXED: Final = ("row", "action", "name", "prediction", "weight", "right", "wrong")
-HEADER: Final = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])? (?:from|below)", re.DOTALL)
+HEADER: Final = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>.*)\])? (?:from|below)", re.DOTALL)
 
 
 def as_csv(table: RuleTable, names: Names) -> str:
@@ -29,7 +29,7 @@ def as_csv(table: RuleTable, names: Names) -> str:
     writer.writerow(["range", *[""] * 6, *map(repr, known.tolist())])
     blank = [""] * (4 + len(known))
     writer.writerows(["action", a, name, *blank] for a, name in enumerate(names.actions))
-    bounds = np.stack([table.lower, table.upper], axis=2).reshape(len(table), -1)
+    bounds = np.stack([table.lower, table.upper], axis=2).reshape(len(table), len(known))
     for r, row in enumerate(bounds.tolist()):
         action = int(table.action[r])
         numbers = [float(table.prediction[r]), float(table.weight[r])]

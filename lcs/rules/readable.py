@@ -18,7 +18,7 @@ def readable(table: RuleTable, inputs: Array | None = None) -> RuleTable:
     """The rules with bounds of few digits.
 
     inputs (T, n): no bound moves past the value of one of them, so that each rule holds on the
-    same ones as before. Without them, bounds are rounded to a ten thousandth of the range.
+    same ones as before. Without them, bounds have as many decimals as four digits of the range.
     """
     lower, upper = table.lower.copy(), table.upper.copy()
     for i in range(lower.shape[1]):

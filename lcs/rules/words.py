@@ -117,7 +117,7 @@ def values_text(each: Input, lower: float, upper: float, high: float) -> str:
         return ""
     if not allowed:
         return f"{each.name} is none of its values"
-    if len(barred) == 1 and len(allowed) > 1:
+    if len(barred) == 1 and len(allowed) > 2:
         return f"{each.name} is not {barred[0]}"
     *most, last = allowed
     return f"{each.name} is {', '.join(most)} or {last}" if most else f"{each.name} is {last}"
