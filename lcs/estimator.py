@@ -2,7 +2,9 @@
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any, Final, Self
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Self, final
 
 import numpy as np
 import numpy.typing as npt
@@ -21,8 +23,48 @@ from lcs.intake import Intake, Missing, OutOfRange, without_gaps
 from lcs.problems.rewards import RIGHT, WRONG
 from lcs.rules.belief import Belief, believe
 from lcs.rules.table import RuleTable
+from lcs.saving import load_one_of
+from lcs.state import (
+    State,
+    array_named,
+    chance_from,
+    from_plain,
+    plain_of,
+    plain_of_chance,
+)
 
 SEEDS: Final = 2**31 - 1
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is saved of a classifier beside arrays: parameters first."""
+
+    config: Config | None
+    examples: int
+    inputs: tuple[Input, ...] | None
+    missing: str
+    out_of_range: str
+    uncovered: Any
+    random_state: Any
+    n_features: int
+    names: tuple[str, ...]
+    classes: tuple[Any, ...]
+    type_of_classes: str
+    met: tuple[int, ...]
+    chance: dict[str, Any]
+    learner: dict[str, Any]
+
+    def refuse_what_no_file_holds(self) -> None:
+        """Classes and parameters may be anything; here they are texts, numbers or None."""
+        for name in ("uncovered", "random_state", "classes"):
+            value = getattr(self, name)
+            for each in value if name == "classes" else [value]:
+                if not isinstance(each, str | int | float | None):
+                    raise LearnerError(
+                        f"{name}: {each!r} can't be saved; texts and plain numbers can"
+                    )
 
 
 class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # no types there
@@ -161,6 +203,64 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
             high=intake.unscaled(table.high),
         )
 
+    def state(self) -> State:
+        """Its parameters and all that it has learnt: what `lcs.saving.save` writes.
+
+        Raises:
+            LearnerError: a class or a parameter is nothing that a file holds.
+        """
+        check_is_fitted(self, "learner_")
+        inner = self.learner_.state()
+        inputs = None if self.inputs is None else tuple(self.inputs)
+        kept = Kept(
+            **{**self.get_params(), "inputs": inputs, "examples": int(self.examples)},
+            n_features=int(self.n_features_in_),
+            names=tuple(str(name) for name in getattr(self, "feature_names_in_", ())),
+            classes=tuple(self.classes_.tolist()),
+            type_of_classes=self.classes_.dtype.str,
+            met=tuple(self._met),
+            chance=plain_of_chance(self._chance),
+            learner=dict(inner.plain),
+        )
+        kept.refuse_what_no_file_holds()
+        of_learner = {f"learner.{name}": each for name, each in inner.arrays.items()}
+        arrays = {"power": self._intake.power.copy(), **of_learner}
+        return State("ALCSRClassifier", plain_of(kept), arrays)
+
+    @classmethod
+    def from_state(cls, state: State) -> Self:
+        """The classifier that had this state.
+
+        Raises:
+            LearnerError: the state is of another version, or damaged.
+        """
+        kept = from_plain(Kept, state.plain, "values")
+        made = cls(**{name: getattr(kept, name) for name in cls().get_params()})
+        made.n_features_in_ = kept.n_features
+        if kept.names:
+            made.feature_names_in_ = np.array(kept.names, object)
+        made.classes_ = np.array(kept.classes, np.dtype(kept.type_of_classes))
+        power = array_named("power", state.arrays)
+        made.inputs_ = made._columns(power.size)
+        made._intake = Intake.with_power(made.inputs_, power, made.missing, made.out_of_range)
+        made._chance = chance_from(kept.chance)
+        arrays = {name.removeprefix("learner."): each for name, each in state.arrays.items()}
+        made.learner_ = ALCSR.from_state(State("ALCSR", kept.learner, arrays))
+        made._met = []
+        made._meet(np.array(kept.met, np.int64))
+        return made
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The classifier that `lcs.saving.save` wrote; it goes on bit for bit as that one would.
+
+        Raises:
+            LearnerError: the file is damaged, no classifier, or of another version.
+            OSError: there is no such file, or it can't be read.
+        """
+        found: Self = load_one_of({"ALCSRClassifier": cls.from_state}, path)
+        return found
+
     def __sklearn_tags__(self) -> Any:
         tags = super().__sklearn_tags__()
         tags.input_tags.allow_nan = self.missing == "any"
@@ -186,11 +286,7 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
 
     def _begin(self, x: Array, classes: npt.NDArray[Any]) -> None:
         """A learner that knows nothing yet of rows like x."""
-        columns = (
-            Encoding(tuple(self.inputs)).columns
-            if self.inputs is not None
-            else tuple(Input(str(name)) for name in self._names(x.shape[1]))
-        )
+        columns = self._columns(x.shape[1])
         self._intake = Intake.of(columns, x, self.missing, self.out_of_range)
         self._intake.taught(x)
         seeds = check_random_state(self.random_state).randint(SEEDS, size=2)
@@ -202,9 +298,12 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
             len(classes), x.shape[1], self.config, reward_range=RIGHT - WRONG, seed=int(seeds[1])
         )
 
-    def _names(self, columns: int) -> Sequence[str]:
-        names: Sequence[str] = getattr(self, "feature_names_in_", [f"x{i}" for i in range(columns)])
-        return names
+    def _columns(self, count: int) -> tuple[Input, ...]:
+        """What the learner's columns are, so many if `inputs` does not say."""
+        if self.inputs is not None:
+            return Encoding(tuple(self.inputs)).columns
+        names = getattr(self, "feature_names_in_", [f"x{i}" for i in range(count)])
+        return tuple(Input(str(name)) for name in names)
 
     def _teach(self, x: Array, labels: npt.NDArray[Any]) -> None:
         """Each row once, in order."""

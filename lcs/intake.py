@@ -46,17 +46,28 @@ class Intake:
         Raises:
             LearnerError: a choice is unknown, or a range empty.
         """
-        _refuse_unknown("missing", missing, MISSING)
-        _refuse_unknown("out_of_range", out_of_range, OUT_OF_RANGE)
-        ranges = [declared(each) for each in columns]
-        low, high = np.array(ranges, np.float64).reshape(-1, 2).T
-        known = np.isfinite(high - low)
+        ends = np.array([declared(each) for each in columns], np.float64).reshape(-1, 2)
         first = np.where(np.isnan(x), np.inf, x).min(axis=0, initial=np.inf)
         last = np.where(np.isnan(x), -np.inf, x).max(axis=0, initial=-np.inf)
         with np.errstate(invalid="ignore", over="ignore"):
-            width = np.where(known, high - low, last - first)
+            width = ends[:, 1] - ends[:, 0]
+            width = np.where(np.isfinite(width), width, last - first)
         _, power = np.frexp(np.where(np.isfinite(width) & (width > 0.0), width, 0.75))
-        return cls(tuple(columns), power.astype(np.int64), low, high, missing, out_of_range)
+        return cls.with_power(columns, power.astype(np.int64), missing, out_of_range)
+
+    @classmethod
+    def with_power(
+        cls, columns: Sequence[Input], power: Integers, missing: Missing, out_of_range: OutOfRange
+    ) -> Self:
+        """For columns whose powers (n,) are known.
+
+        Raises:
+            LearnerError: a choice is unknown, or a range empty.
+        """
+        _refuse_unknown("missing", missing, MISSING)
+        _refuse_unknown("out_of_range", out_of_range, OUT_OF_RANGE)
+        low, high = np.array([declared(each) for each in columns], np.float64).reshape(-1, 2).T
+        return cls(tuple(columns), power, low, high, missing, out_of_range)
 
     def scaled(self, x: Array) -> Array:
         """As the learner sees them."""

@@ -58,16 +58,26 @@ def load(path: str | Path) -> Any:
         LearnerError: the file is damaged, no learner, or of another version.
         OSError: there is no such file, or it can't be read.
     """
+    return load_one_of(KINDS, path)
+
+
+def load_one_of(kinds: Mapping[str, Callable[[State], Any]], path: str | Path) -> Any:
+    """What was saved there, made as is said for its kind.
+
+    Raises:
+        LearnerError: the file is damaged, of none of these kinds, or of another version.
+        OSError: there is no such file, or it can't be read.
+    """
     try:
-        return _learner(from_bytes(Path(path).read_bytes()))
+        return _made(kinds, from_bytes(Path(path).read_bytes()))
     except LearnerError as error:
         raise LearnerError(f"{path} holds no learner that can be used: {error}") from error
 
 
-def _learner(state: State) -> Any:
-    if state.kind not in KINDS:
-        raise LearnerError(f"its kind is '{state.kind}': known are {', '.join(KINDS)}")
-    return KINDS[state.kind](state)
+def _made(kinds: Mapping[str, Callable[[State], Any]], state: State) -> Any:
+    if state.kind not in kinds:
+        raise LearnerError(f"its kind is '{state.kind}': known are {', '.join(kinds)}")
+    return kinds[state.kind](state)
 
 
 def as_bytes(state: State) -> bytes:

@@ -8,6 +8,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from types import UnionType
 from typing import (
     Any,
     Final,
@@ -17,6 +18,7 @@ from typing import (
     TypeAlias,
     TypeVar,
     final,
+    get_args,
     get_origin,
     get_type_hints,
 )
@@ -126,19 +128,22 @@ def from_plain(kind: type[Data], plain: Any, place: str = "config") -> Data:
 
 
 def _value(hint: Any, plain: Any, place: str) -> Any:
+    origin, parts = get_origin(hint), get_args(hint)
+    if hint is Any:
+        return plain
+    if origin is UnionType:  # of one kind and None
+        return None if plain is None else _value(parts[0], plain, place)
+    if origin is tuple and isinstance(plain, list | tuple):
+        return tuple(_value(parts[0], each, f"{place}[{i}]") for i, each in enumerate(plain))
     if dataclasses.is_dataclass(hint):
         return from_plain(hint, plain, place)  # type: ignore[arg-type]  # it is a class
-    if isinstance(hint, type) and issubclass(hint, Enum):
-        if plain not in hint.__members__:
-            raise LearnerError(f"'{place}' is {plain!r}: known are {', '.join(hint.__members__)}")
-        return hint[plain]
-    if isinstance(plain, list):
-        return tuple(plain)
-    if hint is float and type(plain) is int:
-        return plain
-    hint = get_origin(hint) or hint
-    if isinstance(hint, type) and type(plain) is not hint:
-        raise LearnerError(f"'{place}' is {plain!r}, and not of type {hint.__name__}")
+    kind = origin or hint
+    if issubclass(kind, Enum):
+        if plain not in kind.__members__:
+            raise LearnerError(f"'{place}' is {plain!r}: known are {', '.join(kind.__members__)}")
+        return kind[plain]
+    if type(plain) is not kind and not (kind is float and type(plain) is int):
+        raise LearnerError(f"'{place}' is {plain!r}, and not of type {kind.__name__}")
     return plain
 
 

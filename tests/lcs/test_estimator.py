@@ -147,7 +147,7 @@ def test_a_class_that_no_row_of_a_piece_has_may_come_later() -> None:
     found = small(inputs=UNIT).partial_fit(x[y == 1], y[y == 1], classes=[0, 1])
     assert set(found.predict(x)) == {1}
 
-    found.partial_fit(x[y == 0], y[y == 0])
+    found.partial_fit(x[y == 0], y[y == 0]).partial_fit(x, y)
     assert set(found.predict(x)) == {0, 1}
 
 
