@@ -1,7 +1,7 @@
 """The constants of ALCSR by the thesis's names, and how its open places are read."""
 
 from dataclasses import dataclass, field
-from typing import final
+from typing import Final, final
 
 from lcs.alcsr.readings import (
     CorpseRate,
@@ -24,6 +24,7 @@ from lcs.alcsr.readings import (
     StarvedAt,
     VoteOfNone,
 )
+from lcs.faults import LearnerError
 
 
 @final
@@ -50,6 +51,49 @@ class Readings:
     corpses_learn: CorpsesLearn = CorpsesLearn.ALL
     corpse_rate: CorpseRate = CorpseRate.CAPPED
     seeding_by: SeedingBy = SeedingBy.POPULATION
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Beyond:
+    """What goes beyond the thesis, each a switch of its own; all are off at first.
+
+    remembers: how many foods each landscape remembers; what follows needs some, but for `hunger`,
+    `breeds` and `weighs_evidence`.
+    sprouts: whoever is born grows before it lives; the best of so many bodies is born.
+    grows: a body grows again when it holds twice the food, and reaches for food just outside.
+    withdraws: poison makes a body smaller, where that costs it least, instead of weaker.
+    famine: at the end of each season those starve whose food others eat too, and what nobody eats
+    is settled. season: of so many foods at least.
+    doubts: wrong food is told from noise, which is borne.
+    hunger: who was not fed for so many foods of its landscape starves; 0 for never.
+    breeds: whether there are breeding pools.
+    weighs_evidence: votes count by the food that bodies hold, and not by strength per volume.
+    """
+
+    remembers: int = 0
+    sprouts: int = 0
+    grows: bool = False
+    withdraws: bool = False
+    famine: bool = False
+    season: int = 500
+    doubts: bool = False
+    hunger: int = 0
+    breeds: bool = True
+    weighs_evidence: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what needs a memory and has none.
+
+        Raises:
+            LearnerError: a switch needs `remembers`.
+        """
+        needy = ("sprouts", "grows", "withdraws", "famine", "doubts")
+        asked = [name for name in needy if getattr(self, name)]
+        if asked and self.remembers <= 0:
+            raise LearnerError(
+                f"{', '.join(asked)} needs a land that remembers: set remembers, 50000 for instance"
+            )
 
 
 @final
@@ -95,3 +139,19 @@ class Config:
     sprout_width: float = 1.0
     learning_rate: float = 0.2
     readings: Readings = field(default_factory=Readings)
+    beyond: Beyond = field(default_factory=Beyond)
+
+
+GROWN: Final = Config(
+    beyond=Beyond(
+        remembers=50_000,
+        sprouts=4,
+        grows=True,
+        withdraws=True,
+        famine=True,
+        doubts=True,
+        breeds=False,
+        weighs_evidence=True,
+    )
+)
+"""All that makes it learn faster and with fewer rules: for users, and one set for all problems."""

@@ -96,8 +96,8 @@ class ALCSR:
             raise LearnerError(f"a reward is a finite number, and {reward} is none")
         if self._waits_with is None:
             return
-        while not cycle.learn(*self._parts(), self._waits_with, float(reward), self.chance):
-            self.population.make_room()
+        owed = np.full((1, self.population.rules.living.size), float(reward))
+        self._run(self._waits_with[None], owed, cycle.OWED)
         self._waits_with = None
 
     def run(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> Course:
@@ -107,12 +107,7 @@ class ALCSR:
             LearnerError: they are of other sizes or not finite, or a reward is owed.
         """
         x, given = self._problems(inputs, rewards)
-        told, errors = np.zeros((len(x), 5), np.int64), np.zeros(len(x))
-        done = 0
-        while done < len(x):
-            done = cycle.run(*self._parts(), x, given, done, told, errors, self.chance)
-            if done < len(x):
-                self.population.make_room()
+        told, errors = self._run(x, given, cycle.CYCLES)
         kind, action, rules, births, deaths = told.T
         return Course(kind, action, errors, rules, births, deaths)
 
@@ -124,12 +119,7 @@ class ALCSR:
         Raises:
             LearnerError: they are of other sizes or not finite, or a reward is owed.
         """
-        x, given = self._problems(inputs, rewards)
-        done = 0
-        while done < len(x):
-            done = cycle.teach(*self._parts(), x, given, done, self.chance)
-            if done < len(x):
-                self.population.make_room()
+        self._run(*self._problems(inputs, rewards), cycle.ALL)
 
     def decide(self, inputs: npt.ArrayLike) -> tuple[Integers, Array]:
         """The best actions (T,), -1 where some action is unknown, and expected rewards (T, A).
@@ -158,16 +148,16 @@ class ALCSR:
 
     def rules(self) -> RuleTable:
         """What it knows now, as rules; their weight is what their vote counts (4.3.2)."""
-        rules, land, config = self.population.rules, self.population.land, self.config
+        rules, land = self.population.rules, self.population.land
         living = [slice(0, int(count)) for count in rules.living]
 
         def of_all(values: Any) -> Any:
             return np.concatenate([values[a, those] for a, those in enumerate(living)])
 
-        volume, experience = of_all(rules.volume), of_all(rules.experience)
-        weight = np.zeros_like(volume)
-        np.divide(of_all(rules.strength), volume, out=weight, where=volume > 0.0)
-        weight[experience <= config.mature_level * volume] *= config.immature_vote
+        weights = np.zeros_like(rules.strength)
+        cycle.weigh(rules, land, self.population.numbers, weights)
+        weight = of_all(weights)
+        weight[~np.isfinite(weight)] = 0.0
         return RuleTable(
             actions=rules.living.size,
             action=np.repeat(np.arange(rules.living.size), rules.living),
@@ -210,6 +200,15 @@ class ALCSR:
         if kept.is_trying:
             learner._waits_with = learner._checked(array_named("waits_with", state.arrays))
         return learner
+
+    def _run(self, x: Array, rewards: Array, what: int) -> tuple[Integers, Array]:
+        told, errors = np.zeros((len(x), 5), np.int64), np.zeros(len(x))
+        done = 0
+        while done < len(x):
+            done = cycle.run(*self._parts(), x, rewards, done, what, told, errors, self.chance)
+            if done < len(x):
+                self.population.make_room()
+        return told, errors
 
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population

@@ -83,6 +83,12 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         wrong_center=np.zeros((a, ROOM, n)),
         damaged=np.zeros((a, ROOM), np.bool_),
         was_able=np.zeros((a, ROOM), np.bool_),
+        fed_at=np.zeros((a, ROOM), np.int64),
+        grows_at=np.zeros((a, ROOM), np.int64),
+        meals=np.zeros((a, ROOM), np.int64),
+        poisoned=np.zeros((a, ROOM), np.int64),
+        core_meals=np.zeros((a, ROOM), np.int64),
+        core_wrong=np.zeros((a, ROOM), np.int64),
     )
     corpses = Corpses(
         buried=np.zeros(a, np.int64),
@@ -91,7 +97,16 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         lower=np.zeros((a, ROOM, n)),
         upper=np.zeros((a, ROOM, n)),
     )
-    land = Land(np.full(n, np.inf), np.full(n, -np.inf))
+    known = config.beyond.remembers
+    land = Land(
+        low=np.full(n, np.inf),
+        high=np.full(n, -np.inf),
+        foods=np.zeros((a, n, known)),
+        rewards=np.zeros((a, known)),
+        met=np.zeros(a, np.int64),
+        noise=np.zeros(a),
+        season=np.full(a, config.beyond.season),
+    )
     neighbors = 1 + max(config.breeding_neighbors, config.corpse_neighbors)
     scratch = Scratch(
         fed=np.zeros((a, ROOM), np.int64),
@@ -104,6 +119,14 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         distance=np.zeros(neighbors),
         votes=np.zeros(a),
         fractions=np.zeros((2, n)),
+        body=np.zeros((4, n)),
+        axes=np.arange(n),
+        place=np.zeros(n),
+        losses=np.zeros(2 * n),
+        values=np.zeros(known),
+        signs=np.zeros(known),
+        outside=np.zeros(known, np.int64),
+        eaters=np.zeros(known, np.int64),
         progress=np.array([-1, 0, 0, 0]),
         tally=np.zeros(5, np.int64),
     )
@@ -115,10 +138,11 @@ def numbers_of(config: Config, reward_range: float) -> Numbers:
     values = asdict(config)
     readings = values.pop("readings")
     readings["corpse_rate_is"] = readings.pop("corpse_rate")
+    beyond = values.pop("beyond")
     return Numbers(
         **values,
         reward_range=reward_range,
-        **{name: int(value) for name, value in readings.items()},
+        **{name: int(value) for name, value in (readings | beyond).items()},
     )
 
 

@@ -138,6 +138,7 @@ def bear(
         given *= numbers.transfer * numbers.breed_level
         rules.strength[a, parent] -= given
         rules.strength[a, k] += given
+    rules.fed_at[a, k] = land.met[a]
     rules.living[a] = k + 1
     scratch.tally[BRED] += 1
 

@@ -33,6 +33,7 @@ def cover(
         rules.lower[a, k, i] = max(low, land.low[i])
         rules.upper[a, k, i] = min(up, land.high[i])
     rules.volume[a, k] = volume_of(rules.lower[a, k], rules.upper[a, k], land)
+    rules.fed_at[a, k] = land.met[a]
     rules.living[a] = k + 1
     scratch.tally[COVERED] += 1
     if numbers.covered_is == 1:
@@ -51,6 +52,12 @@ def clear(rules: Rules, a: int, k: int, prediction: float) -> None:
     rules.wrong_center[a, k] = 0.0
     rules.damaged[a, k] = False
     rules.was_able[a, k] = False
+    rules.fed_at[a, k] = 0
+    rules.grows_at[a, k] = 0
+    rules.meals[a, k] = 0
+    rules.poisoned[a, k] = 0
+    rules.core_meals[a, k] = 0
+    rules.core_wrong[a, k] = 0
 
 
 @part

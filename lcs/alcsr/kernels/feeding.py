@@ -25,10 +25,13 @@ def error_of(numbers: Numbers, prediction: float, reward: float) -> float:
 
 
 @part
-def feed(rules: Rules, numbers: Numbers, scratch: Scratch, a: int, x: Array, reward: float) -> None:
+def feed(
+    rules: Rules, land: Land, numbers: Numbers, scratch: Scratch, a: int, x: Array, reward: float
+) -> None:
     """Share a unit of food among the action set of landscape a: the wrong type poisons."""
     share = float(scratch.fed_count[a])
     for j in range(scratch.fed_count[a]):
+        rules.fed_at[a, scratch.fed[a, j]] = land.met[a]
         eat(rules, numbers, a, scratch.fed[a, j], x, reward, share)
 
 
@@ -117,6 +120,12 @@ def place(rules: Rules, a: int, source: int, target: int) -> None:
     rules.wrong_center[a, target] = rules.wrong_center[a, source]
     rules.damaged[a, target] = rules.damaged[a, source]
     rules.was_able[a, target] = rules.was_able[a, source]
+    rules.fed_at[a, target] = rules.fed_at[a, source]
+    rules.grows_at[a, target] = rules.grows_at[a, source]
+    rules.meals[a, target] = rules.meals[a, source]
+    rules.poisoned[a, target] = rules.poisoned[a, source]
+    rules.core_meals[a, target] = rules.core_meals[a, source]
+    rules.core_wrong[a, target] = rules.core_wrong[a, source]
 
 
 @part

@@ -10,7 +10,12 @@ from lcs.arrays import Array, Booleans, Integers
 
 
 class Rules(NamedTuple):
-    """All rules. (A, C, n): lower, upper and centers; living (A,): how many; else (A, C)."""
+    """All rules. (A, C, n): lower, upper and centers; living (A,): how many; else (A, C).
+
+    Of those who live beyond the thesis: fed_at, how much food their land had when they were fed
+    last; grows_at, after how much food they grow again; meals and poisoned, what they were offered
+    since they grew, and how often it was wrong; core_meals and core_wrong, the same in their core.
+    """
 
     living: Integers
     lower: Array
@@ -25,6 +30,12 @@ class Rules(NamedTuple):
     wrong_center: Array
     damaged: Booleans
     was_able: Booleans
+    fed_at: Integers
+    grows_at: Integers
+    meals: Integers
+    poisoned: Integers
+    core_meals: Integers
+    core_wrong: Integers
 
 
 class Corpses(NamedTuple):
@@ -38,14 +49,23 @@ class Corpses(NamedTuple):
 
 
 class Land(NamedTuple):
-    """The known range of inputs, low and high (n,)."""
+    """What is known of the land: the range of inputs, low and high (n,), and what grew there.
+
+    foods (A, n, N), rewards (A, N): the last N, met (A,) of all there were. noise (A,): the share
+    of wrong rewards. season (A,): after how much food the season ends.
+    """
 
     low: Array
     high: Array
+    foods: Array
+    rewards: Array
+    met: Integers
+    noise: Array
+    season: Integers
 
 
 class Numbers(NamedTuple):
-    """`Config` and `Readings`, and the range of rewards, for kernels."""
+    """`Config`, `Readings` and `Beyond`, and the range of rewards, for kernels."""
 
     explore: float
     immature_vote: float
@@ -86,6 +106,16 @@ class Numbers(NamedTuple):
     corpses_learn: int
     corpse_rate_is: int
     seeding_by: int
+    remembers: int
+    sprouts: int
+    grows: int
+    withdraws: int
+    famine: int
+    season: int
+    doubts: int
+    hunger: int
+    breeds: int
+    weighs_evidence: int
 
 
 class Scratch(NamedTuple):
@@ -94,6 +124,8 @@ class Scratch(NamedTuple):
     fed (A, C), fed_count (A,): the potential action sets. order (C,), dead (C,): in fights and
     deaths. pool (C,): of breeding; able (C,): those fit for it. near, distance (K,): neighbors.
     votes (A,). fractions (2, n): of covering.
+    Of growth: body (4, n), lower and upper, now and at best; axes (n,), place (n,), losses (2 n,);
+    values, signs, outside and eaters (N,), of each food that is remembered.
     progress: `STAGE`, `SEED`, `POOL`, `ACTION`.
     tally: how many were `COVERED` and `BRED`, and died `POISONED`, `STARVED` and `EATEN`.
     """
@@ -108,6 +140,14 @@ class Scratch(NamedTuple):
     distance: Array
     votes: Array
     fractions: Array
+    body: Array
+    axes: Integers
+    place: Array
+    losses: Array
+    values: Array
+    signs: Array
+    outside: Integers
+    eaters: Integers
     progress: Integers
     tally: Integers
 

@@ -3,8 +3,13 @@
 import numpy as np
 
 from lcs.alcsr.kernels.layout import Land, Numbers, Rules, Scratch
+from lcs.alcsr.kernels.remembering import penalty_of
 from lcs.arrays import Array, Integers
 from lcs.compiled import part
+
+EVEN = 0.5
+LEAST_WEIGHT = 0.1
+"""What weighs evidence: it is held against food that is there half of the time."""
 
 
 @part
@@ -15,15 +20,28 @@ def widen(rules: Rules, land: Land, numbers: Numbers, x: Array) -> None:
     grown = False
     for i in range(x.size):
         if x[i] < land.low[i]:
+            if numbers.grows == 1:
+                move_ends(rules, rules.lower, i, land.low[i], x[i])
             land.low[i] = x[i]
             grown = True
         if x[i] > land.high[i]:
+            if numbers.grows == 1:
+                move_ends(rules, rules.upper, i, land.high[i], x[i])
             land.high[i] = x[i]
             grown = True
     if grown:
         for a in range(rules.living.size):
             for k in range(rules.living[a]):
                 rules.volume[a, k] = volume_of(rules.lower[a, k], rules.upper[a, k], land)
+
+
+@part
+def move_ends(rules: Rules, bounds: Array, i: int, end: float, further: float) -> None:
+    """Bounds where the known range ended go with it: they are no conditions."""
+    for a in range(rules.living.size):
+        for k in range(rules.living[a]):
+            if bounds[a, k, i] == end:
+                bounds[a, k, i] = further
 
 
 @part
@@ -75,19 +93,29 @@ def can_breed(rules: Rules, numbers: Numbers, a: int, k: int) -> bool:
 
 
 @part
-def vote(rules: Rules, numbers: Numbers, a: int, fed: Integers) -> float:
+def vote(rules: Rules, land: Land, numbers: Numbers, a: int, fed: Integers) -> float:
     """The reward that the rules fed (m,) of landscape a expect."""
+    penalty = penalty_of(EVEN, land.noise[a])
     total = 0.0
     weighed = 0.0
     plain = 0.0
     for k in fed:
-        weight = rules.strength[a, k] / rules.volume[a, k]
-        if not is_mature(rules, numbers, a, k):
-            weight *= numbers.immature_vote
+        weight = weight_of(rules, numbers, a, k, penalty)
         total += weight
         weighed += weight * rules.prediction[a, k]
         plain += rules.prediction[a, k]
     return weighed / total if total > 0.0 else plain / fed.size
+
+
+@part
+def weight_of(rules: Rules, numbers: Numbers, a: int, k: int, penalty: float) -> float:
+    """What the vote of rule k counts: strength per volume, or the evidence for it."""
+    if numbers.weighs_evidence == 1:
+        return float(max(LEAST_WEIGHT, rules.right[a, k] - penalty * rules.wrong[a, k]))
+    weight: float = rules.strength[a, k] / rules.volume[a, k]
+    mature = is_mature(rules, numbers, a, k)
+    weighed: float = weight if mature else weight * numbers.immature_vote
+    return weighed
 
 
 @part
@@ -109,7 +137,7 @@ def pick(rng: np.random.Generator, count: int) -> int:
 
 @part
 def choose(
-    rules: Rules, numbers: Numbers, scratch: Scratch, rng: np.random.Generator
+    rules: Rules, land: Land, numbers: Numbers, scratch: Scratch, rng: np.random.Generator
 ) -> tuple[int, bool]:
     """The action, and whether this is a test; `scratch.votes` are of a test."""
     actions = rules.living.size
@@ -122,15 +150,17 @@ def choose(
         return scratch.order[pick(rng, empty)], False
     if rng.random() < numbers.explore:
         return pick(rng, actions), False
-    return best_of(rules, numbers, scratch, rng), True
+    return best_of(rules, land, numbers, scratch, rng), True
 
 
 @part
-def best_of(rules: Rules, numbers: Numbers, scratch: Scratch, rng: np.random.Generator) -> int:
+def best_of(
+    rules: Rules, land: Land, numbers: Numbers, scratch: Scratch, rng: np.random.Generator
+) -> int:
     """The action with the highest vote; of several, one at random."""
     best = 0
     for a in range(rules.living.size):
-        scratch.votes[a] = vote(rules, numbers, a, scratch.fed[a, : scratch.fed_count[a]])
+        scratch.votes[a] = vote(rules, land, numbers, a, scratch.fed[a, : scratch.fed_count[a]])
     highest = scratch.votes.max()
     for a in range(rules.living.size):
         if scratch.votes[a] == highest:
