@@ -12,17 +12,17 @@ class Config:
     explore: the share of steps that try an action at random. discount: what a reward is worth one
     step later. memories: how many steps the land remembers; of more, a fair sample. fed: so many
     memories of each action a body needs to live. families: how many times the land is divided,
-    each time from another sample of its memories; their bodies vote together. first: bodies grow
+    each time at other places by chance; their bodies vote together. first: bodies grow
     after so many steps, and anew whenever there were twice as many. generations: how often they
     grow at such a time, from what the generation before expected. longest: an episode is given up
     after so many steps.
     """
 
     explore: float = 0.5
-    discount: float = 0.95
+    discount: float = 0.99
     memories: int = 20_000
-    fed: int = 20
-    families: int = 3
-    first: int = 1_000
+    fed: int = 5
+    families: int = 5
+    first: int = 5_000
     generations: int = 4
-    longest: int = 500
+    longest: int = 200

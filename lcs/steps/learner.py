@@ -1,7 +1,7 @@
 """A learner for delayed rewards: the land remembers steps, and bodies divide in it."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,8 @@ from lcs.rules.table import RuleTable
 from lcs.steps.config import Config
 from lcs.steps.kernels import episodes, growing, voting
 from lcs.steps.kernels.layout import Bodies, Land, Numbers
+
+LONGEST: Final = 500
 
 
 @final
@@ -121,8 +123,16 @@ class StepsLearner:
             self.end_episode()
         return _told(told, bodies)
 
-    def follow(self, world: Plane, starts: npt.ArrayLike, outside: np.random.Generator) -> Episodes:
+    def follow(
+        self,
+        world: Plane,
+        starts: npt.ArrayLike,
+        outside: np.random.Generator,
+        longest: int = LONGEST,
+    ) -> Episodes:
         """The best actions from each start (E, 2), nothing learnt; ties by a state of its own.
+
+        An episode is given up after `longest` steps.
 
         Raises:
             LearnerError: the world has other actions or inputs.
@@ -130,7 +140,7 @@ class StepsLearner:
         self._fits(world)
         places = self._checked(np.asarray(starts, np.float64))
         told = np.zeros((len(places), 3))
-        ties, longest = np.random.default_rng(0), self.config.longest
+        ties = np.random.default_rng(0)
         episodes.follow(world.square, self.bodies, places, longest, told, ties, outside)
         return _told(told, np.full(len(places), len(self.bodies.lower)))
 

@@ -74,18 +74,14 @@ def settle(land: Land, bodies: Bodies, discount: float, target: Array) -> int:
 def born(
     land: Land, target: Array, numbers: Numbers, actions: int, chance: np.random.Generator
 ) -> Bodies:
-    """The families that the memories divide into, each by a sample of its own."""
+    """The families that the memories divide into, each by chance of its own."""
     count, n = target.size, land.x.shape[1]
     most = count // (numbers.fed * actions) + 2
     lower, upper = np.empty((0, n)), np.empty((0, n))
     first = np.zeros(numbers.families + 1, np.int64)
     room_lower, room_upper = np.empty((most, n)), np.empty((most, n))
     for family in range(numbers.families):
-        order = np.arange(count)
-        if numbers.families > 1:
-            for k in range(count):
-                order[k] = int(chance.random() * count)
-        found = divide(land, target, order, numbers.fed, actions, room_lower, room_upper)
+        found = divide(land, target, numbers.fed, room_lower, room_upper, actions, chance)
         lower = np.concatenate((lower, room_lower[:found]))
         upper = np.concatenate((upper, room_upper[:found]))
         first[family + 1] = len(lower)
