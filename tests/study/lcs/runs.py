@@ -11,6 +11,7 @@ import numpy as np
 
 from lcs.alcsr.config import Config
 from lcs.alcsr.learner import ALCSR
+from lcs.alcsr.readings import RangeIs
 from lcs.arrays import Integers
 from lcs.course import Course
 from lcs.curves import Curve, curve_of
@@ -71,6 +72,8 @@ def made(wanted: Wanted) -> Run:
     task = problem(wanted.experiment)
     x, rewards, right = task.drawn(wanted.cycles, np.random.default_rng([wanted.seed, 1]))
     learner = ALCSR(task.classes, task.inputs, wanted.config, seed=wanted.seed)
+    if wanted.config.readings.range_is is RangeIs.DECLARED:
+        learner.population.land.low[:], learner.population.land.high[:] = 0.0, 1.0
     begun = time.process_time()
     parts = []
     for at in range(0, wanted.cycles, STEP):
