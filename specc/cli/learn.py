@@ -133,7 +133,7 @@ def learn(
     had never been stopped; so does what was killed, from its last checkpoint. A run that is done
     goes on to more --cycles.
 
-    Accuracy is that on fresh problems; one that no rule knows counts as wrong.
+    Accuracy is that on fresh problems; one where some action has no rule counts as wrong.
 
     **Examples**
 
@@ -206,7 +206,8 @@ def _run(
     from specc.learning.folder import begin_in
     from specc.learning.learning import Stopped, concluded, learnt_from
 
-    made, config = problem_of(experiment), config_of(experiment)
+    made = problem_of(experiment)
+    config = config_of(experiment, made)
     if output is not None and is_new:
         begin_in(output, experiment)
     warmed_learner(experiment.learner)

@@ -11,7 +11,7 @@ from lcs.problems.registry import PROBLEMS, Offer, Value, made, table_offer
 from spec_schema.diagnostics import Diagnostic, SpecError
 from spec_schema.suggest import did_you_mean, there_are
 from specc.faults import fault
-from specc.learning.learners import LEARNERS
+from specc.learning.learners import LEARNERS, learner_for
 from specc.learning.settings import choices, configured, problem, value_of
 
 TABLE: Final = ".csv"
@@ -70,14 +70,23 @@ def problem_of(experiment: Experiment) -> Problem:
         raise fault("V402", experiment.problem, str(error)) from error
 
 
-def config_of(experiment: Experiment) -> Any:
-    """The config of the learner.
+def config_of(experiment: Experiment, made: Problem) -> Any:
+    """The config of the learner, which is tried on the problem.
 
     Raises:
-        SpecError: a constant or reading is unknown (V341), or can't have that value (V342).
+        SpecError: a constant or reading is unknown (V341), or can't have that value, alone or
+            beside the others (V342).
     """
+    named = ", ".join(f"{name}={text}" for name, text in experiment.settings.items())
     known = LEARNERS[experiment.learner]
-    return configured(known.config, experiment.settings, experiment.learner)
+    try:
+        config = configured(known.config, experiment.settings, experiment.learner)
+        learner_for(made, experiment.learner, config, 0)
+    except LearnerError as error:
+        raise fault("V342", named or experiment.learner, str(error)) from error
+    if not 0.0 <= config.explore <= 1.0:
+        raise fault("V342", named, "explore is a share of cycles, from 0 to 1")
+    return config
 
 
 def offer_of(name: str) -> Offer:

@@ -7,7 +7,7 @@ from typing import Any, Final, Protocol, final
 import numpy as np
 
 from lcs.alcsr import config as alcsr
-
+from lcs.alcsr.config import GROWN
 from lcs.alcsr.learner import ALCSR
 from lcs.arrays import Array
 from lcs.course import Learner
@@ -48,7 +48,7 @@ def ranges_of(problem: Problem) -> tuple[Array, Array]:
 
 
 LEARNERS: Final[Mapping[str, Known]] = {
-    "alcsr": Known("artificial life, with all that goes beyond the thesis", alcsr.Config(), _alcsr),
+    "alcsr": Known("artificial life, with all that goes beyond the thesis", GROWN, _alcsr),
     "thesis": Known(
         "artificial life, to the letter of the thesis's chapter 4", alcsr.Config(), _alcsr
     ),

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
-from lcs.faults import LearnerError
 from lcs.problems.problem import Problem
 from lcs.rules.compaction import Compacted
-from specc.faults import fault
 from specc.learning import folder as folders
 from specc.learning.experiment import Experiment
 from specc.learning.resuming import keep, taken_up
@@ -108,10 +106,7 @@ def _taken_up_or_begun(
 ) -> Run:
     if folder is not None and folders.checkpoint(folder, seed).exists():
         return taken_up(folders.checkpoint(folder, seed))
-    try:
-        return begun(experiment, problem, config, seed)
-    except LearnerError as error:
-        raise fault("V402", experiment.problem, str(error)) from error
+    return begun(experiment, problem, config, seed)
 
 
 def _keep(run: Run, folder: Path | None, *, is_last: bool) -> None:

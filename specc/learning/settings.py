@@ -35,7 +35,7 @@ def configured(config: Config, given: Mapping[str, str], learner: str) -> Config
             problems.append(_unknown(name, text, known, learner))
             continue
         try:
-            values[path] = value_of(text, known[path])
+            values[path] = _allowed(value_of(text, known[path]))
         except ValueError as error:
             problems.append(problem("V342", f"{name}={text}", str(error), choices(known[path])))
     if problems:
@@ -111,6 +111,13 @@ def choices(value: object) -> str:
 def problem(code: str, named: str, message: str, remedy: str) -> Diagnostic:
     """What is wrong with what a user gave on the command line."""
     return Diagnostic(code, Severity.ERROR, message, Source(named, ""), None, help=remedy)
+
+
+def _allowed(value: object) -> object:
+    """A constant: none of any learner is below 0."""
+    if isinstance(value, int | float) and value < 0:
+        raise ValueError(f"{value:g} is negative")
+    return value
 
 
 def _leaves(config: object, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], object]]:

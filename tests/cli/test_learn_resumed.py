@@ -56,10 +56,11 @@ def started(*arguments: str) -> "subprocess.Popen[str]":
 def learnt(folder: str, cycles: int) -> Path:
     """The folder in which a run is kept, after so many cycles."""
     board = Experiment("checkerboard_3x3", {}, "alcsr", {}, cycles, (0,), 1)
+    problem = problem_of(board)
     learnt_from(
         board,
-        problem_of(board),
-        config_of(board),
+        problem,
+        config_of(board, problem),
         Path(folder),
         tell=lambda _what, _done, _of: None,
         shall_stop=lambda: False,
