@@ -206,6 +206,8 @@ def test_the_examples_of_a_page_print_what_they_say(
     names: dict[str, object] = {}
 
     for found in BLOCK.finditer(page):
+        if found["kind"] != "python":
+            continue
         exec(compile(found["text"], name, "exec"), names)  # noqa: S102  our own page
         printed = capsys.readouterr().out.splitlines()
         promised = re.findall(r"^ *print\(.*?\)  # (.*)$", found["text"], re.MULTILINE)
