@@ -81,6 +81,7 @@ study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs figures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs readings
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.xcsr
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.classifier
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.scitos
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.steps
 

@@ -11,16 +11,22 @@ import numpy.typing as npt
 from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.utils import check_random_state
 from sklearn.utils.multiclass import check_classification_targets
-from sklearn.utils.validation import check_consistent_length, check_is_fitted, validate_data
+from sklearn.utils.validation import (
+    assert_all_finite,
+    check_consistent_length,
+    check_is_fitted,
+    column_or_1d,
+    validate_data,
+)
 
-from lcs.alcsr.config import Config
+from lcs.alcsr.config import GROWN, Config
 from lcs.alcsr.learner import ALCSR
 from lcs.arrays import Array, Integers
 from lcs.encoding import Encoding
 from lcs.faults import LearnerError
 from lcs.inputs import Input
 from lcs.intake import Intake, Missing, OutOfRange, without_gaps
-from lcs.problems.rewards import RIGHT, WRONG
+from lcs.problems.rewards import RIGHT, WRONG, rewards_of
 from lcs.rules.belief import Belief, believe
 from lcs.rules.table import RuleTable
 from lcs.saving import load_one_of
@@ -74,7 +80,8 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
     class in turn, 1000 for the right one and -1000 for the others.
 
     Args:
-        config: the constants of ALCSR, and how open places of the thesis are read.
+        config: the constants of ALCSR, and how open places of the thesis are read. None for
+            `GROWN`, which goes beyond it; its memory is no longer than `fit` needs.
         examples: how many rows `fit` shows, the same ones again and again, each pass in an order
             of its own; whole passes, and one at least.
         inputs: what the columns are: names, units, ranges, and values of those that are not
@@ -103,7 +110,7 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         self,
         config: Config | None = None,
         *,
-        examples: int = 20_000,
+        examples: int = 5_000,
         inputs: Sequence[Input] | None = None,
         missing: Missing = "refuse",
         out_of_range: OutOfRange = "clip",
@@ -125,8 +132,8 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
             LearnerError: a value can't be used; with its row and column.
         """
         x, labels = self._read(X, y, first=True)
-        self._begin(x, np.unique(labels))
         rows = len(x)
+        self._begin(x, np.unique(labels), max(self.examples, rows))
         for _ in range(max(1, -(-self.examples // rows))):
             order = self._chance.permutation(rows)
             self._teach(x[order], labels[order])
@@ -148,7 +155,7 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         if is_first:
             if classes is None:
                 raise LearnerError("the first partial_fit needs classes=, all that there may be")
-            self._begin(x, np.unique(classes))
+            self._begin(x, np.unique(classes), GROWN.beyond.remembers)
         elif classes is not None and not np.array_equal(np.unique(classes), self.classes_):
             raise LearnerError(f"classes are {self.classes_.tolist()} since the first partial_fit")
         self._teach(x, labels)
@@ -164,11 +171,9 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         best = found.probability.argmax(axis=1)  # of equals, the class that was met first
         is_covered = found.is_covered[np.arange(len(best)), best]
         said: npt.NDArray[Any] = self.classes_[self._class_of[best]]
-        if isinstance(self.uncovered, str) and self.uncovered == "nearest":
-            return said
-        if isinstance(self.uncovered, str) and self.uncovered == "refuse":
-            for row in np.flatnonzero(~is_covered):
-                raise LearnerError(f"row {row}: no rule for any class holds there")
+        if isinstance(self.uncovered, str) and self.uncovered in {"nearest", "refuse"}:
+            if self.uncovered == "refuse" and not is_covered.all():
+                raise LearnerError(f"row {is_covered.argmin()}: no rule for its class holds")
             return said
         if np.any(~is_covered):
             said = said.astype(np.result_type(said, np.asarray(self.uncovered)))
@@ -269,7 +274,10 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
     def _read(self, X: Any, y: Any, *, first: bool) -> tuple[Array, npt.NDArray[Any]]:
         """Rows and labels, of the same length."""
         x = self._numbers(X, first=first)
-        labels: npt.NDArray[Any] = validate_data(self, y=y)
+        if y is None:
+            raise LearnerError("fit requires y to be passed, but the target y is None")
+        labels: npt.NDArray[Any] = column_or_1d(y, warn=True)
+        assert_all_finite(labels, input_name="y")
         check_classification_targets(labels)
         check_consistent_length(x, labels)
         return x, labels
@@ -284,8 +292,8 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         )
         return found
 
-    def _begin(self, x: Array, classes: npt.NDArray[Any]) -> None:
-        """A learner that knows nothing yet of rows like x."""
+    def _begin(self, x: Array, classes: npt.NDArray[Any], to_come: int) -> None:
+        """A learner that knows nothing yet of rows like x, of which so many are to come."""
         columns = self._columns(x.shape[1])
         self._intake = Intake.of(columns, x, self.missing, self.out_of_range)
         self._intake.taught(x)
@@ -294,8 +302,9 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         self.inputs_ = columns
         self.classes_ = classes
         self._met: list[int] = []
+        config = self.config if self.config is not None else _remembering(to_come)
         self.learner_ = ALCSR(
-            len(classes), x.shape[1], self.config, reward_range=RIGHT - WRONG, seed=int(seeds[1])
+            len(classes), x.shape[1], config, reward_range=RIGHT - WRONG, seed=int(seeds[1])
         )
 
     def _columns(self, count: int) -> tuple[Input, ...]:
@@ -317,8 +326,8 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         self._meet(found)
         land = self.learner_.population.land
         given = without_gaps(self._intake.taught(x), land.low, land.high, self._chance)
-        is_right = self._action_of[found][:, None] == np.arange(len(self.classes_))
-        self.learner_.teach(given, np.where(is_right, RIGHT, WRONG))
+        action = self._action_of[found]
+        self.learner_.teach(given, rewards_of(action, len(self.classes_), 0.0, self._chance))
 
     def _meet(self, found: Integers) -> None:
         """Give classes their actions in the order in which they come, whatever their names are."""
@@ -334,3 +343,9 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         table = self.learner_.rules()
         x = self._intake.asked(self._numbers(X, first=False), table.low, table.high)
         return believe(table, x)
+
+
+def _remembering(examples: int) -> Config:
+    """What users have, with no more room for memories than there are examples to come."""
+    least = max(1, min(examples, GROWN.beyond.remembers))
+    return dataclasses.replace(GROWN, beyond=dataclasses.replace(GROWN.beyond, remembers=least))

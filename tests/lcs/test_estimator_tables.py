@@ -145,3 +145,15 @@ def test_a_rule_on_a_name_is_learnt_from_a_table() -> None:
         found.predict([("teal", 1.0, "small")])
     with pytest.raises(LearnerError, match="row 0, 'size' is NaN"):
         found.predict([("red", 1.0, None)])
+
+
+def test_names_of_the_columns_are_kept_and_asked_for() -> None:
+    pandas = pytest.importorskip("pandas", reason="pandas is no dependency")
+    x = np.random.default_rng(0).random((40, 2))
+    frame = pandas.DataFrame(x, columns=["ahead", "left"])
+    found = ALCSRClassifier(examples=80, random_state=0).fit(frame, x[:, 0] > 0.5)
+
+    assert found.feature_names_in_.tolist() == ["ahead", "left"]
+    assert [each.name for each in found.inputs_] == ["ahead", "left"]
+    with pytest.raises(ValueError, match="same order"):
+        found.predict(frame[["left", "ahead"]])
