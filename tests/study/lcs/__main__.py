@@ -9,13 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from tests.study.lcs import experiments, pictures, readings
+from tests.study.lcs import experiments, idle, pictures, readings
 
 STUDIES: Final[dict[str, Callable[[Path, int], None]]] = {
     "experiments": experiments.tell,
     "figures": pictures.draw,
     "readings": readings.tell,
     "nearest": readings.tell_nearest,
+    "idle": idle.tell,
 }
 
 
