@@ -80,6 +80,8 @@ study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs experiments
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs figures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs readings
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs nearest
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs idle
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.xcsr
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.classifier
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.scitos
