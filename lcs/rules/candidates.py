@@ -40,18 +40,16 @@ class Examples:
 class Candidates:
     """Boxes lower, upper (each n,) of a level, in the order in which they were grown.
 
-    of (T,): the level whose boxes have to hold an
-    example; -1 of those that nobody has to.
+    held (T,): the examples that are in any of them.
     """
 
-    of: Integers
+    held: Booleans
     lower: list[Array] = field(default_factory=list)
     upper: list[Array] = field(default_factory=list)
     level: list[int] = field(default_factory=list)
 
-    def boxes(self, those: Integers) -> tuple[Array, Array]:
-        """Their lower and upper bounds, (C, n) each."""
-        n = len(self.lower[0]) if self.lower else 0
+    def boxes(self, those: Integers, n: int) -> tuple[Array, Array]:
+        """The lower and upper bounds of some, (C, n) each, of n inputs."""
         lower = np.reshape([self.lower[c] for c in those], (-1, n))
         upper = np.reshape([self.upper[c] for c in those], (-1, n))
         return lower, upper
@@ -68,12 +66,12 @@ def grown(rules: RuleTable, level: Integers, seen: Examples, to_cover: Booleans)
 
     level (R,): of the rules' predictions. No box holds an example that was told another level.
     First those are covered that were told: from rules of their level, or else from any. Then the
-    others, which may be in boxes of any level.
+    others are, by boxes of any level.
     """
-    found = Candidates(np.full(len(seen.x), -1))
+    found = Candidates(np.zeros(len(seen.x), np.bool_))
     order = _by_evidence(rules, level, seen)
     for is_told in (True, False):
-        waiting = np.flatnonzero(to_cover & (seen.is_told == is_told) & (found.of < 0))
+        waiting = np.flatnonzero(to_cover & (seen.is_told == is_told) & ~found.held)
         for of_any_level in (False, True):
             for r in order:
                 own = [int(level[r])]
@@ -90,7 +88,9 @@ def denoised(
 
     Of those that are in no such box nothing is told.
     """
-    last = np.sqrt((1.0 - noise) / noise)
+    # In a box of one level there are so many right ones for each wrong one; across a decision
+    # surface there is about one. What a wrong one counts grows from the latter to near the former.
+    penalties = ((1.0 - noise) / noise) ** np.array([0.0, 0.25, 0.5, 0.75])
     # Of so many examples, somewhere so many in a row are wrong by chance in one case of twenty.
     enough = np.log(len(seen.x) / 0.05) / np.log(1.0 / noise)
     of, waiting = np.full(len(seen.x), -1), to_cover & seen.is_told
@@ -101,10 +101,10 @@ def denoised(
         if inside.size < enough:
             continue
         box = lower, upper, int(level[r])
-        low, up = grown_box(box, inside, seen, np.array([1.0, last]))
+        low, up = grown_box(box, inside, seen, penalties)
         held = boxes_hold(low[None], up[None], seen.high, seen.x)[0]
         right, wrong = counts(low[None], up[None], level[r : r + 1], seen)
-        if right[0] > last * wrong[0] + enough:
+        if right[0] > penalties[-1] * wrong[0] + enough:
             of[held & (of < 0)] = level[r]
             waiting &= ~held
     return dataclasses.replace(
@@ -144,8 +144,7 @@ def _from_rule(
         low, up = grown_box(box, inside, seen)
         found.add(low, up, level)
         held = boxes_hold(low[None], up[None], seen.high, seen.x)[0]
-        held &= (found.of < 0) & ((seen.level == level) | ~seen.is_told)
-        found.of[held] = level
+        found.held |= held
         inside, waiting = inside[~held[inside]], waiting[~held[waiting]]
     return waiting
 

@@ -18,39 +18,52 @@ GIVE: Final = 0.01
 """By how much of the range a bound may give way to one of fewer digits, where others hold."""
 
 
-def chosen(found: Candidates, seen: Examples) -> Integers:
-    """Which candidates to take; more are grown from them as long as that makes them fewer."""
-    kept = _of_all_levels(found, seen)
+def chosen(found: Candidates, seen: Examples, to_cover: Booleans) -> Integers:
+    """Which candidates to take, so that all of `to_cover` (T,) are held.
+
+    First the fewest that hold what was told, each by a box of its level; more are grown from them
+    as long as that makes them fewer. Then, of the examples of which nothing was told, those that
+    are in none of them need others, of any level.
+    """
+    told = to_cover & seen.is_told
+    kept = _of_all_levels(found, seen, told)
     for _ in range(ROUNDS):
         for c in kept:
-            _grow_again(found, int(c), kept, seen)
-        fewer = _of_all_levels(found, seen)
+            _grow_again(found, int(c), kept, seen, told)
+        fewer = _of_all_levels(found, seen, told)
         if len(fewer) >= len(kept):
             break
         kept = fewer
-    return kept
+    left = np.flatnonzero(to_cover & ~seen.is_told)
+    left = left[~_held(found, kept, seen, left).any(axis=0)]
+    every = np.arange(len(found.level))
+    held = _held(found, every, seen, left)
+    more = smallest_cover(held, held.sum(axis=1)) if left.size else []
+    return np.concatenate([kept, every[more]])
 
 
-def _of_all_levels(found: Candidates, seen: Examples) -> Integers:
-    kept = []
+def _of_all_levels(found: Candidates, seen: Examples, told: Booleans) -> Integers:
+    kept = [np.zeros(0, np.int64)]
     for level in sorted(set(found.level)):
         those = np.flatnonzero(np.array(found.level) == level)
-        held = _held(found, those, seen.x[found.of == level], seen)
-        kept.append(those[smallest_cover(held, held.sum(axis=1))])
-    return np.concatenate(kept) if kept else np.zeros(0, np.int64)
+        held = _held(found, those, seen, np.flatnonzero(told & (seen.level == level)))
+        if held.any():
+            kept.append(those[smallest_cover(held, held.sum(axis=1))])
+    return np.concatenate(kept)
 
 
-def _held(found: Candidates, those: Integers, x: Array, seen: Examples) -> Booleans:
-    lower, upper = found.boxes(those)
-    return boxes_hold(lower, upper, seen.high, x)
+def _held(found: Candidates, those: Integers, seen: Examples, rows: Integers) -> Booleans:
+    """Which of those candidates hold which examples, (C, K)."""
+    lower, upper = found.boxes(those, seen.x.shape[1])
+    return boxes_hold(lower, upper, seen.high, seen.x[rows])
 
 
-def _grow_again(found: Candidates, c: int, kept: Integers, seen: Examples) -> None:
+def _grow_again(found: Candidates, c: int, kept: Integers, seen: Examples, told: Booleans) -> None:
     """Add the box that grows from what candidate c alone holds (Espresso's reduce and expand)."""
     level = found.level[c]
     same = kept[np.array(found.level)[kept] == level]
-    need = np.flatnonzero(found.of == level)
-    held = _held(found, same, seen.x[need], seen)
+    need = np.flatnonzero(told & (seen.level == level))
+    held = _held(found, same, seen, need)
     alone = need[held[same == c][0] & (held.sum(axis=0) == 1)]
     if not alone.size:
         return
@@ -59,34 +72,49 @@ def _grow_again(found: Candidates, c: int, kept: Integers, seen: Examples) -> No
     found.add(*grown_box((lower, upper, level), alone, seen), level)
 
 
-def snap(found: Candidates, kept: Integers, seen: Examples) -> None:
-    """Give the kept candidates, in place, bounds of few digits; what was held is still held.
+def settle(found: Candidates, kept: Integers, seen: Examples, *, few_digits: bool) -> None:
+    """Move the bounds of the kept candidates, in place, to the middle between told examples.
 
-    A bound stays between the examples beside it, or gives way a little over those that other kept
-    ones of its level hold too.
+    Or near to it, where numbers have few digits: a bound may give way a little over examples that
+    other kept ones hold too. What was told another level is not taken in, and all examples that
+    any of them held are still held.
     """
-    for level in set(found.level):
-        same = [int(c) for c in kept if found.level[c] == level]
-        x = seen.x[found.of == level]
-        held = _held(found, np.array(same, np.int64), x, seen)
-        for row, c in enumerate(same):
-            for i in range(x.shape[1]):
-                alone = x[held[row] & (held.sum(axis=0) == 1), i]
-                _snap_interval(found.lower[c], found.upper[c], i, alone, seen)
-                held[row] = _held(found, np.array([c]), x, seen)[0]
+    everywhere = np.arange(len(seen.x))
+    rows = everywhere[_held(found, kept, seen, everywhere).any(axis=0)]
+    held = _held(found, kept, seen, rows)
+    for k, c in enumerate(kept.tolist()):
+        for i in range(seen.x.shape[1]):
+            alone = seen.x[rows[held[k] & (held.sum(axis=0) == 1)], i]
+            box = found.lower[c], found.upper[c]
+            _settle_interval(box, i, alone, seen, few_digits=few_digits)
+            held[k] = _held(found, kept[k : k + 1], seen, rows)[0]
 
 
-def _snap_interval(lower: Array, upper: Array, i: int, alone: Array, seen: Examples) -> None:
+def _settle_interval(
+    box: tuple[Array, Array], i: int, alone: Array, seen: Examples, *, few_digits: bool
+) -> None:
     """Both bounds of input i; alone (K,): the values of the examples that only this box holds."""
-    around = np.zeros(4)
-    growing.gaps(seen.columns, lower, upper, seen.low, seen.high, i, around)
+    around, (lower, upper) = np.zeros(4), box
+    ends = lower, upper, seen.low, seen.high
+    growing.gaps(seen.columns, seen.is_told, ends, i, around)
     below, first, last, above = around.tolist()
     low, high = float(seen.low[i]), float(seen.high[i])
     give = GIVE * (high - low)
     least, most = float(alone.min(initial=np.inf)), float(alone.max(initial=-np.inf))
+    if min(first, least) > max(last, most):
+        return  # nobody is in it that is not in others
     if lower[i] > low:
-        near = float(lower[i])
-        lower[i] = snapped(max(below, low), max(first, min(least, near + give)), near)
+        below = max(below, low)
+        near = below + (min(first, least) - below) / 2.0
+        lower[i] = _placed(below, min(least, max(first, near + give)), near, few_digits=few_digits)
     if upper[i] < high:
-        near = float(upper[i])
-        upper[i] = snapped(min(last, max(most, near - give)), min(above, high), near)
+        above = min(above, high)
+        near = above - (above - max(last, most)) / 2.0
+        upper[i] = _placed(max(most, min(last, near - give)), above, near, few_digits=few_digits)
+
+
+def _placed(above: float, up_to: float, near: float, *, few_digits: bool) -> float:
+    """A bound in (above, up_to], as near as may be."""
+    if few_digits:
+        return snapped(above, up_to, near)
+    return near if above < near <= up_to else up_to

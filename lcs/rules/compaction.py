@@ -15,7 +15,7 @@ from lcs.arrays import Array, Booleans, Integers
 from lcs.faults import LearnerError
 from lcs.inputs import Input
 from lcs.rules.candidates import Candidates, Examples, counts, denoised, grown
-from lcs.rules.choosing import chosen, snap
+from lcs.rules.choosing import chosen, settle
 from lcs.rules.deciding import Decisions, boxes_hold, columns_of, decide
 from lcs.rules.experience import Accuracy, Experience, accuracy, nearest_level
 from lcs.rules.parts import in_range, joined, rules_of
@@ -76,6 +76,8 @@ def compact(
         raise LearnerError(f"noise is a share of rewards, from 0 to below 0.5; got {noise}")
     if seen.rewards.shape[1] != table.actions:
         raise LearnerError(f"{table.actions} actions need as many columns of rewards")
+    if len(table) == 0:
+        return Compacted(table, 0, 0, accuracy(table, seen), accuracy(table, seen))
     first = _in_range_of(table, seen.inputs)
     before = now = accuracy(table, seen)
     kept = first
@@ -107,9 +109,8 @@ def _passed(table: RuleTable, seen: Experience, noise: float, *, few_digits: boo
         if noise > 0.0:
             examples = denoised(rules, level, examples, to_cover, noise)
         found = grown(rules, level, examples, to_cover)
-        kept = chosen(found, examples)
-        if few_digits:
-            snap(found, kept, examples)
+        kept = chosen(found, examples, to_cover)
+        settle(found, kept, examples, few_digits=few_digits)
         parts.append(_as_rules(found, kept, examples, table, action, levels))
     return joined(parts)
 
@@ -120,7 +121,7 @@ def _examples(
     """The examples of an action, equal inputs as one, and which have to be covered."""
     told = nearest_level(seen.rewards[:, action], levels)
     believed = nearest_level(said.expected[:, action], levels)
-    x, level, is_told, count = _equal_as_one(seen.inputs, told, believed)
+    x, level, is_told, count = _equal_as_one(seen.inputs, told, believed, len(levels))
     covered = decide(table, x).voters[:, action] > 0
     inside = ((x >= table.low) & (x <= table.high)).all(axis=1) & (level >= 0)
     x, level, is_told, count = x[inside], level[inside], is_told[inside], count[inside]
@@ -130,7 +131,7 @@ def _examples(
 
 
 def _equal_as_one(
-    inputs: Array, told: Integers, believed: Integers
+    inputs: Array, told: Integers, believed: Integers, levels: int
 ) -> tuple[Array, Integers, Booleans, Integers]:
     """Different inputs, the level of most rewards of each, if any is known, and how many.
 
@@ -138,7 +139,7 @@ def _equal_as_one(
     """
     x, place = np.unique(inputs, axis=0, return_inverse=True)
     place = place.reshape(-1)
-    votes = np.zeros((len(x), int(max(told.max(), believed.max())) + 1))
+    votes = np.zeros((len(x), levels))
     known = told >= 0
     np.add.at(votes, (place[known], told[known]), 1.0)
     count = np.maximum(votes.max(axis=1), 1.0).astype(np.int64)
@@ -158,7 +159,7 @@ def _as_rules(
     levels: Array,
 ) -> RuleTable:
     """The kept candidates as rules of an action."""
-    lower, upper = found.boxes(kept)
+    lower, upper = found.boxes(kept, seen.x.shape[1])
     level = np.array(found.level, np.int64)[kept]
     right, wrong = counts(lower, upper, level, seen)
     return RuleTable(

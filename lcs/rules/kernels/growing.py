@@ -32,15 +32,15 @@ def walk(
     gain: Array,
     start: int,
     step: int,
-) -> tuple[float, float]:
-    """The last value to take in, and the first to leave out, walking from index `start` of order.
+) -> float:
+    """The first value to leave out, walking from index `start` of order; NaN: none.
 
     Only examples that are `inside` in all other inputs count; equal values go together, and those
-    of the first are taken in whatever they are. NaN, where there is none to leave out.
+    of the first are taken in whatever they are.
     """
     total = best = 0.0
     first = here = column[order[start]]
-    last, leave = here, np.nan
+    leave = np.nan
     waits = False  # whether `leave` is still to be found
     k = start
     while 0 <= k < order.size:
@@ -51,15 +51,13 @@ def walk(
         if column[t] != here:
             if total >= best:
                 best = total
-                last, waits = here, True
+                waits = True
             here = column[t]
             if waits:
                 leave, waits = here, False
         if here != first:
             total += gain[t]
-    if total >= best:
-        return here, np.nan
-    return last, leave
+    return np.nan if total >= best else leave
 
 
 @part
@@ -84,17 +82,15 @@ def set_interval(
     at = column[seed]
     sorted_column = column[order]
     last = np.searchsorted(sorted_column, at, "right") - 1
-    below, leave_below = walk(column, order, inside, gain, last, -1)
+    leave_below = walk(column, order, inside, gain, last, -1)
     first = np.searchsorted(sorted_column, at)
-    above, leave_above = walk(column, order, inside, gain, first, 1)
+    leave_above = walk(column, order, inside, gain, first, 1)
     before_lower, before_upper = lower[i], upper[i]
     lower[i], upper[i] = low[i], high[i]
     if not np.isnan(leave_below):
-        middle = leave_below + (below - leave_below) / 2.0
-        lower[i] = middle if middle > leave_below else below
+        lower[i] = np.nextafter(leave_below, np.inf)
     if not np.isnan(leave_above):
-        middle = above + (leave_above - above) / 2.0
-        upper[i] = middle if middle > above else leave_above
+        upper[i] = leave_above
     add_out(column, lower[i], upper[i], high[i], 1, out)
     return bool(lower[i] != before_lower or upper[i] != before_upper)
 
@@ -130,13 +126,19 @@ def grow(
 
 @kernel
 def gaps(
-    columns: Array, lower: Array, upper: Array, low: Array, high: Array, i: int, found: Array
+    columns: Array,
+    is_told: Booleans,
+    box: tuple[Array, Array, Array, Array],
+    i: int,
+    found: Array,
 ) -> None:
     """Fill found (4,): around both bounds of input i, between which values they may move.
 
     Below the lower bound, above it, below the upper, above it; -inf and inf where nobody is.
-    Only examples that are inside in all other inputs count.
+    Only examples that were told, and are inside in all other inputs, count. The box is lower,
+    upper, low, high (n,).
     """
+    lower, upper, low, high = box
     found[:] = (-np.inf, np.inf, -np.inf, np.inf)
     out = np.zeros(columns.shape[1], np.int64)
     for j in range(lower.size):
@@ -149,7 +151,7 @@ def gaps(
             out,
         )
     for t in range(out.size):
-        if out[t] > 0:
+        if out[t] > 0 or not is_told[t]:
             continue
         at = columns[i, t]
         if at < lower[i]:

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lcs.alcsr.learner import ALCSR
 from lcs.arrays import Array
 from lcs.faults import LearnerError
 from lcs.problems.classes import Classes, checkerboard, multiplexer
+from lcs.problems.rewards import RIGHT, WRONG
 from lcs.rules.compaction import compact
 from lcs.rules.deciding import decide
 from lcs.rules.experience import Experience, accuracy, experience_of, nearest_level, remembered
@@ -33,7 +33,7 @@ def drawn_case(seed: int, grid: int) -> tuple[RuleTable, Experience]:
     return drawn_table(seed, rules=14, grid=grid), experience_of(inputs, rewards)
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(seed=SEEDS, grid=st.sampled_from([0, 5]), few_digits=st.booleans())
 def test_what_was_covered_stays_covered_and_what_was_right_stays_right(
     *, seed: int, grid: int, few_digits: bool
@@ -67,18 +67,27 @@ def test_compacting_again_changes_nothing(seed: int, grid: int) -> None:
         np.testing.assert_array_equal(getattr(twice.table, name), getattr(once.table, name))
 
 
-def learnt(problem: Classes, cycles: int, seed: int) -> RuleTable:
-    learner = ALCSR(problem.classes, problem.inputs, seed=seed)
-    inputs, rewards, _ = problem.drawn(cycles, np.random.default_rng(seed))
-    learner.run(inputs, rewards)
-    return learner.rules()
+def as_if_learnt(problem: Classes, seed: int) -> RuleTable:
+    """Boxes a quarter of the range wide in a problem of two inputs: right in their middle."""
+    chance = np.random.default_rng(seed)
+    corner = chance.random((400, 2)) * 1.2 - 0.2
+    lower, upper = np.maximum(corner, 0.0), np.minimum(corner + 0.25, 1.0)
+    label = problem.label((lower + upper) / 2.0)
+    return table_of(
+        [
+            (action, low, up, RIGHT if action == right else WRONG)
+            for low, up, right in zip(lower.tolist(), upper.tolist(), label, strict=True)
+            for action in range(2)
+        ],
+        range_to=1.0,
+    )
 
 
 def test_of_a_checkerboard_the_fields_are_left() -> None:
     problem = checkerboard(3)
     inputs, rewards, _ = problem.drawn(20_000, np.random.default_rng(1))
 
-    found = compact(learnt(problem, 6_000, seed=2), experience_of(inputs, rewards))
+    found = compact(as_if_learnt(problem, seed=2), experience_of(inputs, rewards))
 
     assert len(found.table) == 18  # nine fields, two actions
     assert found.after.decided == 1.0
@@ -111,11 +120,11 @@ def test_flipped_rewards_are_passed_over() -> None:
     inputs, rewards, _ = problem.drawn(10_000, chance)
     flipped = np.where(chance.random(rewards.shape) < 0.15, -rewards, rewards)
 
-    found = compact(learnt(problem, 6_000, seed=2), experience_of(inputs, flipped), noise=0.15)
+    found = compact(as_if_learnt(problem, seed=2), experience_of(inputs, flipped), noise=0.15)
 
     truth = accuracy(found.table, experience_of(inputs, rewards))
-    assert truth.decided > 0.985
-    assert len(found.table) <= 24
+    assert truth.decided > 0.97
+    assert len(found.table) <= 30
 
 
 def test_one_tried_action_of_each_input_is_enough() -> None:
@@ -124,7 +133,7 @@ def test_one_tried_action_of_each_input_is_enough() -> None:
     tried = chance.integers(2, size=len(inputs))
     seen = remembered(inputs, tried, rewards[np.arange(len(inputs)), tried], actions=2)
 
-    found = compact(learnt(problem, 6_000, seed=2), seen)
+    found = compact(as_if_learnt(problem, seed=2), seen)
 
     assert accuracy(found.table, experience_of(inputs, rewards)).decided > 0.99
     assert np.isnan(found.after.decided)
