@@ -49,9 +49,11 @@ class Config:
     this share of the mean [BW].
     theta_sub: the experience that one needs to subsume [BW].
     theta_mna: how many actions a match set must have, else it is covered; 0: all of them [BW].
-    s_0: the largest half width of a covering interval, as a share of the range [W].
+    s_0: the largest half width of a covering interval, as a share of the range [W]; where classes
+    change several times along an input (checkerboards), about the width of one of its fields.
     m_0: the largest step of a mutation, as a share of the range [W].
-    P_hash: the chance that covering leaves an input free [BW]; [W] has none.
+    P_hash: the chance that covering leaves an input free [BW]; [W] has none. With many inputs
+    (24, say) what covered one input holds for hardly any other without it.
     p_I, epsilon_I, F_I: prediction, error and fitness at birth [BW].
     ga_subsumption, action_set_subsumption: whether parents subsume offspring, and the most general
     accurate classifier of an action set the others [BW].
