@@ -14,7 +14,7 @@ from runtime import code
 from spec_schema.expressions import tree
 
 ROOT = Path(__file__).parents[1]
-HEAVY = ("numba", "scipy", "matplotlib", "pint", "sympy", "networkx", "rosbags", "mcap")
+HEAVY = ("numba", "scipy", "matplotlib", "pint", "sympy", "networkx", "rosbags", "mcap", "sklearn")
 
 
 def imported_by(statement: str) -> set[str]:

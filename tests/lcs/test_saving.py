@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lcs.alcsr.config import Config, Readings
+from lcs.alcsr.config import GROWN, Config, Readings
 from lcs.alcsr.learner import ALCSR
 from lcs.alcsr.readings import ErrorOf
 from lcs.arrays import Array
@@ -47,14 +47,15 @@ COPIES: dict[str, Callable[[ALCSR, Path], ALCSR]] = {
 }
 
 
+@pytest.mark.parametrize("config", [Config(), GROWN], ids=["thesis", "grown"])
 @pytest.mark.parametrize("how", COPIES)
 @pytest.mark.parametrize("stopped_at", ["act", "learn"])
 def test_a_copy_goes_on_as_if_nothing_had_been_stopped(
-    how: str, stopped_at: str, tmp_path: Path
+    config: Config, how: str, stopped_at: str, tmp_path: Path
 ) -> None:
     x, rewards = problems()
     chance = np.random.default_rng(8)
-    going, stopped = ALCSR(2, 2, seed=3), ALCSR(2, 2, seed=3)
+    going, stopped = ALCSR(2, 2, config, seed=3), ALCSR(2, 2, config, seed=3)
     stops = np.sort(chance.choice(CYCLES, 6, replace=False))
     for t, (one, given) in enumerate(zip(x, rewards, strict=True)):
         if t in stops and stopped_at == "act":
