@@ -91,7 +91,7 @@ bench: .venv/ready ## table lookup, the decoding of logs and learning beside the
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(BIN)/python tests/bench/lookup.py
 	$(BIN)/python tests/bench/decode.py
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench.lcs
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench.lcs --seeds 1
 
 bench-large: .venv/ready ## memory and time on a log of 2 GB, which is made in out/
 	$(BIN)/python tests/study/large_log.py
