@@ -9,11 +9,11 @@ from typing import final
 class Config:
     """Every constant, with defaults that suit all problems tried.
 
-    explore: the share of steps that try an action at random. discount: what a reward is worth one
-    step later. memories: how many steps the land remembers; of more, a fair sample. fed: so many
-    memories of each action a body needs to live. families: how many times the land is divided,
-    each time at other places by chance; their bodies vote together. first: bodies grow
-    after so many steps, and anew whenever there were twice as many. generations: how often they
+    explore: the share of steps that try an action at random; those are remembered. discount: what
+    a reward is worth one step later. memories: how many the land holds; of more, a fair sample.
+    fed: so many memories of each action a body needs to live. families: how many times the land is
+    divided, each time at other places by chance; their bodies vote together. first: bodies grow
+    after so many tries, and anew whenever there were twice as many. generations: how often they
     grow at such a time, from what the generation before expected. longest: an episode is given up
     after so many steps.
     """

@@ -69,12 +69,14 @@ class StepsLearner:
                 "the action before waits for what it led to: call learn(reward, next_x, done) first"
             )
         place = self._checked(np.asarray(x, np.float64)[None])[0]
-        action = int(voting.try_once(self.bodies, place, self.config.explore, self.chance))
-        self._waits = (place, action)
-        return action
+        said = int(voting.try_once(self.bodies, place, self.config.explore, self.chance))
+        self._waits = (place, said)
+        return said if said >= 0 else -1 - said
 
     def learn(self, reward: float, next_x: npt.ArrayLike, done: bool) -> None:  # noqa: FBT001 as gymnasium says it
         """What the action led to: a reward, a place (n,), and whether the episode ends there.
+
+        Only actions that were tried by chance are remembered, as in the thesis (4.4).
 
         Raises:
             LearnerError: no action waits, or something is not finite.
@@ -84,10 +86,11 @@ class StepsLearner:
         if not np.isfinite(reward):
             raise LearnerError(f"a reward is a finite number, and {reward} is none")
         after = self._checked(np.asarray(next_x, np.float64)[None])[0]
-        place, action = self._waits
-        voting.remember_once(
-            self.land, place, action, float(reward), after, bool(done), self.chance
-        )
+        place, said = self._waits
+        if said >= 0:
+            voting.remember_once(
+                self.land, place, said, float(reward), after, bool(done), self.chance
+            )
         self._waits = None
         if done:
             self.end_episode()

@@ -21,7 +21,7 @@ def learn(
     chance: np.random.Generator,
     outside: np.random.Generator,
 ) -> int:
-    """Go through episodes from `done` on, until so many steps were seen as are `due`; how many.
+    """Go through episodes from `done` on, until so many steps were tried as are `due`; how many.
 
     told (E, 3): of each its steps, the sum of its rewards, and whether it reached the goal.
     chance: the learner's. outside: the world's.
@@ -31,9 +31,11 @@ def learn(
         start(square, outside, x)
         told[done] = 0.0
         for _ in range(numbers.longest):
-            action = tried(bodies, x, numbers.explore, chance, worth)
+            said = tried(bodies, x, numbers.explore, chance, worth)
+            action = said if said >= 0 else -1 - said
             reward, ends = step(square, x, action, outside, after)
-            remember(land, x, action, reward, after, ends, chance)
+            if said >= 0:
+                remember(land, x, action, reward, after, ends, chance)
             told[done, 0] += 1.0
             told[done, 1] += reward
             x[:] = after

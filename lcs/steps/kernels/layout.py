@@ -9,7 +9,7 @@ from lcs.arrays import Array, Booleans, Integers
 
 
 class Land(NamedTuple):
-    """Steps that were made, a fair sample of them: from x (M, n) by an action to `after` (M, n).
+    """Steps tried by chance, a fair sample of them: from x (M, n) by an action to `after` (M, n).
 
     action, reward, ends: (M,). seen (1,): how many steps there were ever.
     """

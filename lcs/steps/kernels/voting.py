@@ -56,10 +56,10 @@ def chosen(bodies: Bodies, x: Array, chance: np.random.Generator, worth: Array) 
 def tried(
     bodies: Bodies, x: Array, explore: float, chance: np.random.Generator, worth: Array
 ) -> int:
-    """The best action, or with the chance `explore` any."""
+    """With the chance `explore` any action a, to be remembered; else the best one, as -1 - a."""
     if chance.random() < explore:
         return int(chance.random() * worth.size)
-    return chosen(bodies, x, chance, worth)
+    return -1 - chosen(bodies, x, chance, worth)
 
 
 @part
