@@ -13,7 +13,7 @@ from lcs.arrays import Array, Integers
 
 RIGHT, WRONG = 1000.0, -1000.0
 SPREAD: Final = 0.5
-"""How far covering reaches; of seven settings tried on the 6-multiplexer this one learnt fastest."""
+"""How far covering reaches; the best of seven settings tried on the 6-multiplexer."""
 
 TOURNAMENT: Final = {
     "select_type": "tournament",
