@@ -11,6 +11,7 @@ from lcs.problems.optimum import fewest_steps
 from lcs.problems.steps import Plane, gridworld
 from lcs.steps.config import Config
 from lcs.steps.learner import StepsLearner
+from lcs.steps.policy import GOOD, policy
 
 SMALL = Config(memories=4_000, families=2, generations=3, first=500, longest=200)
 
@@ -55,14 +56,31 @@ def starts(count: int) -> Array:
     return np.asarray(places[places.sum(axis=1) <= 1.9][:count])
 
 
-def test_after_300_episodes_it_reaches_the_goal_from_everywhere() -> None:
-    world, ours = gridworld(), learner(config=Config())
-    ours.run(world, 300, np.random.default_rng(1))
+@pytest.fixture(scope="module")
+def experienced() -> StepsLearner:
+    ours = learner(config=Config())
+    ours.run(gridworld(), 300, np.random.default_rng(1))
+    return ours
 
-    went = ours.follow(world, starts(200), np.random.default_rng(2))
+
+def test_after_300_episodes_it_reaches_the_goal_from_everywhere(experienced: StepsLearner) -> None:
+    went = experienced.follow(gridworld(), starts(200), np.random.default_rng(2))
 
     assert went.reached.all()
     assert went.steps.mean() < 1.1 * fewest_steps(starts(200)).mean()
+
+
+def test_its_policy_in_few_rules_is_to_go_right_or_up(experienced: StepsLearner) -> None:
+    few = policy(experienced, starts(400), tolerance=0.3).table
+
+    is_good = few.prediction == GOOD
+
+    assert len(few) <= 16
+    assert set(few.action[is_good]) == {0, 1}
+    for a in (0, 1):  # the places where the action is no worse than any: all but a border
+        of_it = is_good & (few.action == a)
+        size = np.prod(few.upper[of_it] - few.lower[of_it], axis=1)
+        assert size.max() > 0.6
 
 
 def test_step_by_step_is_the_same_as_compiled() -> None:
