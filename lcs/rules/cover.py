@@ -25,7 +25,7 @@ def smallest_cover(held: Booleans, worth: Array) -> list[int]:
     left = whole
     for c in taken:
         left &= ~sets[c]
-    free = [c for c in range(len(sets)) if c not in taken]
+    free = _largest([c for c in range(len(sets)) if c not in taken], left, sets)
     more = _searched(left, sets, free)
     return sorted(order[c] for c in _without_spare([*taken, *more], sets))
 
@@ -40,6 +40,16 @@ def _essential(sets: list[int], bits: Booleans) -> list[int]:
     alone = bits[bits.sum(axis=1) == 1]
     found = alone.any(axis=0)
     return [c for c in range(len(sets)) if found[c]]
+
+
+def _largest(free: list[int], left: int, sets: list[int]) -> list[int]:
+    """Those of the free sets that hold something left, and no less than another of them does."""
+    kept: list[int] = []
+    for c in sorted(free, key=lambda c: (-(sets[c] & left).bit_count(), c)):
+        held = sets[c] & left
+        if held and all(held & ~sets[other] for other in kept):
+            kept.append(c)
+    return sorted(kept)
 
 
 def _greedy(left: int, sets: list[int], free: list[int]) -> list[int]:
