@@ -8,11 +8,23 @@ import numpy.typing as npt
 
 from lcs.alcsr.config import Config
 from lcs.alcsr.kernels import cycle
-from lcs.alcsr.kernels.layout import Corpses, Land, Numbers, Rules, Scratch
+from lcs.alcsr.kernels.layout import (
+    ACTION,
+    STAGE,
+    UNEATEN,
+    UNTENDED,
+    Corpses,
+    Land,
+    Numbers,
+    Rules,
+    Scratch,
+)
+from lcs.alcsr.kernels.tending import tend
 from lcs.alcsr.population import Population, all_arrays, empty, restored
 from lcs.arrays import Array, Integers
 from lcs.course import Course
 from lcs.faults import LearnerError
+from lcs.given import input_of, inputs_of, reward_of, rewards_of
 from lcs.rules.table import RuleTable
 from lcs.state import State, array_named, chance_from, from_plain, plain_of, plain_of_chance
 
@@ -92,11 +104,10 @@ class ALCSR:
         Raises:
             LearnerError: the reward is not finite.
         """
-        if not np.isfinite(reward):
-            raise LearnerError(f"a reward is a finite number, and {reward} is none")
+        given = reward_of(reward)
         if self._waits_with is None:
             return
-        owed = np.full((1, self.population.rules.living.size), float(reward))
+        owed = np.full((1, self.population.rules.living.size), given)
         self._run(self._waits_with[None], owed, cycle.OWED)
         self._waits_with = None
 
@@ -207,8 +218,18 @@ class ALCSR:
         while done < len(x):
             done = cycle.run(*self._parts(), x, rewards, done, what, told, errors, self.chance)
             if done < len(x):
-                self.population.make_room()
+                self._go_on(x[done], rewards[done])
         return told, errors
+
+    def _go_on(self, x: Array, rewards: Array) -> None:
+        """Do what the kernels stopped for."""
+        parts = self.population
+        progress = parts.scratch.progress
+        if progress[STAGE] in (UNEATEN, UNTENDED):
+            reward = float(rewards[progress[ACTION]])
+            tend(parts.rules, parts.land, parts.numbers, parts.scratch, x, reward, self.chance)
+        else:
+            parts.make_room()
 
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population
@@ -220,26 +241,11 @@ class ALCSR:
 
     def _problems(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> tuple[Array, Array]:
         self._refuse_while_waiting()
-        x, given = self._all_checked(inputs), np.ascontiguousarray(rewards, np.float64)
-        if given.shape != (len(x), self.population.rules.living.size):
-            raise LearnerError(
-                f"rewards are {given.shape}: {len(x)} inputs and "
-                f"{self.population.rules.living.size} actions need as many rows and columns"
-            )
-        if not np.isfinite(given).all():
-            raise LearnerError("a reward is not finite")
-        return x, given
+        x = self._all_checked(inputs)
+        return x, rewards_of(rewards, len(x), self.population.rules.living.size)
 
     def _checked(self, x: npt.ArrayLike) -> Array:
-        given: Array = self._all_checked(np.asarray(x, np.float64)[None])[0]
-        return given
+        return input_of(x, self.population.land.low.size)
 
     def _all_checked(self, inputs: npt.ArrayLike) -> Array:
-        x = np.ascontiguousarray(inputs, np.float64)
-        n = self.population.land.low.size
-        if x.ndim != 2 or x.shape[1] != n:
-            raise LearnerError(f"an input is {n} numbers, and not of shape {x.shape[1:]}")
-        if not np.isfinite(x).all():
-            row = int(np.flatnonzero(~np.isfinite(x).all(axis=1))[0])
-            raise LearnerError(f"input {row} is not finite: {x[row].tolist()}")
-        return x
+        return inputs_of(inputs, self.population.land.low.size)

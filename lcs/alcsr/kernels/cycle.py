@@ -1,29 +1,35 @@
 """The operating cycle, once or over many inputs.
 
 A kernel that has no room for another rule or corpse stops, says so, and is called again with more:
-`scratch.progress` keeps where it stood, so that nothing is drawn twice.
+`scratch.progress` keeps where it stood, so that nothing is drawn twice. It stops too where bodies
+are to grow, which is compiled apart.
 """
 
 import numpy as np
 
 from lcs.alcsr.kernels.breeding import breed
+from lcs.alcsr.kernels.covering import cover
 from lcs.alcsr.kernels.feeding import die, feed, fight
+from lcs.alcsr.kernels.hunger import needs_tending, starve_hungry
 from lcs.alcsr.kernels.layout import (
     ACTION,
+    BEGINNING,
     BRED,
     COVERED,
+    DONE,
+    LIVED,
     POISONED,
     STAGE,
+    UNEATEN,
+    UNTENDED,
     Corpses,
     Land,
     Numbers,
     Rules,
     Scratch,
 )
-from lcs.alcsr.kernels.living import grow_again, settle, starve_hungry
 from lcs.alcsr.kernels.matching import EVEN, best_of, choose, match, weight_of, widen
 from lcs.alcsr.kernels.remembering import penalty_of, remember
-from lcs.alcsr.kernels.seasons import end_season
 from lcs.alcsr.kernels.withdrawing import withdraw
 from lcs.arrays import Array, Integers
 from lcs.compiled import kernel, part
@@ -56,7 +62,7 @@ def live_on(
     rng: np.random.Generator,
 ) -> bool:
     """Deaths, fights and births among those fed; False where there is no room for a birth."""
-    while scratch.progress[STAGE] < 3:
+    while scratch.progress[STAGE] < LIVED:
         what = ORDERS[numbers.order][scratch.progress[STAGE]]
         if what == DIE:
             die(rules, corpses, land, numbers, scratch, a)
@@ -107,80 +113,63 @@ def learn(
     reward: float,
     rng: np.random.Generator,
 ) -> bool:
-    """What follows the reward of `scratch.progress[ACTION]`; False where there is no room."""
+    """What follows the reward of `scratch.progress[ACTION]`.
+
+    False where it has to stop: there is no room, or `lcs.alcsr.kernels.tending` has to go on.
+    """
     progress = scratch.progress
     a = progress[ACTION]
-    if progress[STAGE] < 0:
+    if progress[STAGE] == BEGINNING:
         progress[STAGE] = 0
         remember(land, a, x, reward)
         is_borne = numbers.withdraws == 1 and withdraw(rules, land, scratch, a, x, reward)
-        if scratch.fed_count[a] == 0:
-            if not is_borne:
-                settle(rules, corpses, land, numbers, scratch, a, x, reward, rng)
-            progress[STAGE] = 3
-        else:
+        if scratch.fed_count[a] > 0:
             feed(rules, land, numbers, scratch, a, x, reward)
-    if not live_on(rules, corpses, land, numbers, scratch, a, rng):
+        elif is_borne:
+            progress[STAGE] = LIVED
+        elif numbers.grows == 1 or numbers.sprouts > 0:
+            progress[STAGE] = UNEATEN
+        else:
+            cover(rules, corpses, land, numbers, scratch, a, x, reward, rng)
+            progress[STAGE] = LIVED
+    if progress[STAGE] < LIVED and not live_on(rules, corpses, land, numbers, scratch, a, rng):
         return False
-    if numbers.grows == 1:
-        grow_again(rules, land, scratch, a, x, rng)
-    if numbers.hunger > 0:
-        starve_hungry(rules, land, numbers, scratch, a)
-    if numbers.remembers > 0:
-        end_season(rules, land, numbers, scratch, a, rng)
-    progress[STAGE] = -1
+    if progress[STAGE] == LIVED:
+        if numbers.hunger > 0:
+            starve_hungry(rules, land, numbers, scratch, a)
+        progress[STAGE] = UNTENDED if needs_tending(rules, land, numbers, scratch, a) else DONE
+    if progress[STAGE] != DONE:
+        return False
+    progress[STAGE] = BEGINNING
     return True
 
 
 @part
-def choose_and_learn(
+def start(
     rules: Rules,
     corpses: Corpses,
     land: Land,
     numbers: Numbers,
     scratch: Scratch,
     x: Array,
-    rewards: Array,
+    what: int,
     told: Integers,
     rng: np.random.Generator,
 ) -> bool:
-    """A cycle on x (n,) with rewards (A,); False where there is no room."""
-    if scratch.progress[STAGE] < 0:
+    """See who covers x (n,) and which action comes first; False where there is no room."""
+    told[0] = TRIED
+    if what == ALL:
+        scratch.progress[ACTION] = 0
+        return ready(rules, corpses, land, numbers, scratch, x)
+    if what == CYCLES:
         said = begin(rules, corpses, land, numbers, scratch, x, rng)
         if said == rules.living.size:
             return False
-        a = -1 - said if said < 0 else said
-        told[0] = TRIED if scratch.fed_count[a] > 0 else FORCED
-        told[1] = a
+        told[1] = scratch.progress[ACTION]
         if said < 0:
             told[0] = TEST
-    if told[0] == TEST:
-        return True
-    return learn(rules, corpses, land, numbers, scratch, x, rewards[told[1]], rng)
-
-
-@part
-def learn_all(
-    rules: Rules,
-    corpses: Corpses,
-    land: Land,
-    numbers: Numbers,
-    scratch: Scratch,
-    x: Array,
-    rewards: Array,
-    rng: np.random.Generator,
-) -> bool:
-    """Learn each action's reward (A,) on x (n,); False where there is no room."""
-    progress = scratch.progress
-    if progress[STAGE] < 0:
-        if not ready(rules, corpses, land, numbers, scratch, x):
-            return False
-        progress[ACTION] = 0
-    while progress[ACTION] < rules.living.size:
-        reward = rewards[progress[ACTION]]
-        if not learn(rules, corpses, land, numbers, scratch, x, reward, rng):
-            return False
-        progress[ACTION] += 1
+        elif scratch.fed_count[told[1]] == 0:
+            told[0] = FORCED
     return True
 
 
@@ -206,22 +195,22 @@ def run(
     errors (T,): of a test |vote - reward|, else NaN.
     One kernel for all three, since it is the compilation of what follows a reward that takes long.
     """
+    progress = scratch.progress
     for t in range(first, inputs.shape[0]):
         x = inputs[t]
-        errors[t] = np.nan
-        if what == ALL:
-            done = learn_all(rules, corpses, land, numbers, scratch, x, rewards[t], rng)
-        elif what == OWED:
-            reward = rewards[t, scratch.progress[ACTION]]
-            done = learn(rules, corpses, land, numbers, scratch, x, reward, rng)
-        else:
-            done = choose_and_learn(
-                rules, corpses, land, numbers, scratch, x, rewards[t], told[t], rng
-            )
+        if progress[STAGE] == BEGINNING:
+            if not start(rules, corpses, land, numbers, scratch, x, what, told[t], rng):
+                return t
+            errors[t] = np.nan
             if told[t, 0] == TEST:
                 errors[t] = abs(scratch.votes[told[t, 1]] - rewards[t, told[t, 1]])
-        if not done:
-            return t
+        while told[t, 0] != TEST:
+            reward = rewards[t, progress[ACTION]]
+            if not learn(rules, corpses, land, numbers, scratch, x, reward, rng):
+                return t
+            if what != ALL or progress[ACTION] + 1 == rules.living.size:
+                break
+            progress[ACTION] += 1
         told[t, 2] = rules.living.sum()
         told[t, 3] = scratch.tally[COVERED] + scratch.tally[BRED]
         told[t, 4] = scratch.tally[POISONED:].sum()

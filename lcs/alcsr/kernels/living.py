@@ -1,11 +1,11 @@
-"""Who is born in a land that remembers, who grows again, and who starves of hunger."""
+"""Who is born in a land that remembers, and who grows again."""
 
 import numpy as np
 
-from lcs.alcsr.kernels.covering import clear, cover
-from lcs.alcsr.kernels.feeding import remove
+from lcs.alcsr.kernels.covering import clear
 from lcs.alcsr.kernels.growing import grow_on, sprout
-from lcs.alcsr.kernels.layout import BRED, STARVED, Corpses, Land, Numbers, Rules, Scratch
+from lcs.alcsr.kernels.hunger import due_to_grow
+from lcs.alcsr.kernels.layout import BRED, Land, Numbers, Rules, Scratch
 from lcs.alcsr.kernels.matching import volume_of
 from lcs.alcsr.kernels.reaching import reach
 from lcs.alcsr.kernels.remembering import least_evidence, penalty_of, share_of
@@ -19,7 +19,6 @@ DOUBLE, FEW = 2, 8
 @part
 def settle(
     rules: Rules,
-    corpses: Corpses,
     land: Land,
     numbers: Numbers,
     scratch: Scratch,
@@ -34,10 +33,7 @@ def settle(
         if k >= 0:
             rules.right[a, k] += 1
             return
-    if numbers.sprouts > 0:
-        bear_sprout(rules, land, numbers, scratch, a, x, reward, rng)
-    else:
-        cover(rules, corpses, land, numbers, scratch, a, x, reward, rng)
+    bear_sprout(rules, land, numbers, scratch, a, x, reward, rng)
 
 
 @part
@@ -86,10 +82,7 @@ def grow_again(
     rules: Rules, land: Land, scratch: Scratch, a: int, x: Array, rng: np.random.Generator
 ) -> None:
     """One of those fed at x (n,), if it has eaten enough since it grew."""
-    due = -1
-    for k in scratch.fed[a, : scratch.fed_count[a]]:
-        if rules.right[a, k] + rules.wrong[a, k] >= rules.grows_at[a, k]:
-            due = k
+    due = due_to_grow(rules, scratch, a)
     if due < 0:
         return
     scratch.body[0] = rules.lower[a, due]
@@ -99,15 +92,3 @@ def grow_again(
     take_body(rules, land, scratch, a, due, right, wrong)
     rules.core_meals[a, due] //= 2
     rules.core_wrong[a, due] //= 2
-
-
-@part
-def starve_hungry(rules: Rules, land: Land, numbers: Numbers, scratch: Scratch, a: int) -> None:
-    """One rule is looked at in turn: it dies if it was not fed for too long."""
-    if rules.living[a] == 0:
-        return
-    k = land.met[a] % rules.living[a]
-    if land.met[a] - rules.fed_at[a, k] > numbers.hunger:
-        scratch.dead[k] = True
-        scratch.tally[STARVED] += 1
-        remove(rules, scratch, a)
