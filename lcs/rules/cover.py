@@ -6,8 +6,8 @@ import numpy as np
 
 from lcs.arrays import Array, Booleans
 
-STEPS: Final = 2_000
-"""Of the search for a smaller cover; where they end, the best so far is taken."""
+LOOKS: Final = 20_000
+"""At sets, in the search for a smaller cover; where they end, the best so far is taken."""
 
 
 def smallest_cover(held: Booleans, worth: Array) -> list[int]:
@@ -64,7 +64,7 @@ def _greedy(left: int, sets: list[int], free: list[int]) -> list[int]:
 def _searched(left: int, sets: list[int], free: list[int]) -> list[int]:
     """The fewest of the free sets that hold all that is left."""
     best = _greedy(left, sets, free)
-    steps = STEPS
+    steps = LOOKS // max(len(free), 1)
     stack: list[tuple[int, list[int]]] = [(left, [])]
     while stack and steps > 0:
         steps -= 1
