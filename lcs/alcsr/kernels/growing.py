@@ -228,7 +228,7 @@ def end_above(
         total += signs[order[j]]
         any_right = any_right or signs[order[j]] > 0.0
         if j + 1 == order.size or values[order[j + 1]] > values[order[j]]:
-            if any_right and total >= best:
+            if (any_right and total >= best) or values[order[j]] == seed:
                 best, after = total, j + 1
             any_right = False
     if after == order.size:

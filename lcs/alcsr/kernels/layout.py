@@ -153,7 +153,7 @@ class Scratch(NamedTuple):
 
 
 STAGE, SEED, POOL, ACTION = range(4)
-BEGINNING, LIVED, UNEATEN, UNTENDED, DONE = -1, 3, 4, 5, 6
+BEGINNING, LIVED, UNEATEN, UNTENDED, UNCOVERED, DONE = -1, 3, 4, 5, 6, 7
 """Stages before and after those of `Order`; in `UNEATEN` and `UNTENDED` kernels stop for `tend`."""
 
 COVERED, BRED, POISONED, STARVED, EATEN = range(5)

@@ -26,14 +26,20 @@ def settle(
     x: Array,
     reward: float,
     rng: np.random.Generator,
-) -> None:
-    """Food at x (n,) that nobody eats: somebody reaches for it, or is born there."""
+) -> bool:
+    """Food at x (n,) that nobody eats: somebody reaches for it, or grows there before it is born.
+
+    False where it is to be covered as in the thesis.
+    """
     if numbers.grows == 1:
         k = reach(rules, land, a, x, reward)
         if k >= 0:
             rules.right[a, k] += 1
-            return
+            return True
+    if numbers.sprouts == 0:
+        return False
     bear_sprout(rules, land, numbers, scratch, a, x, reward, rng)
+    return True
 
 
 @part

@@ -10,6 +10,7 @@ from lcs.alcsr.kernels.layout import (
     DONE,
     LIVED,
     STAGE,
+    UNCOVERED,
     UNEATEN,
     Land,
     Numbers,
@@ -36,8 +37,8 @@ def tend(
     progress = scratch.progress
     a = progress[ACTION]
     if progress[STAGE] == UNEATEN:
-        settle(rules, land, numbers, scratch, a, x, reward, rng)
-        progress[STAGE] = LIVED
+        is_settled = settle(rules, land, numbers, scratch, a, x, reward, rng)
+        progress[STAGE] = LIVED if is_settled else UNCOVERED
         return
     if numbers.grows == 1:
         grow_again(rules, land, scratch, a, x, rng)
