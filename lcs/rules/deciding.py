@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Array, Booleans, Integers
-from lcs.faults import LearnerError
+from lcs.given import inputs_of
 from lcs.rules.kernels import voting
 from lcs.rules.table import RuleTable
 
@@ -82,11 +82,4 @@ def checked(table: RuleTable, inputs: npt.ArrayLike) -> Array:
     Raises:
         LearnerError: not n finite numbers each.
     """
-    x = np.ascontiguousarray(inputs, np.float64)
-    n = table.lower.shape[1]
-    if x.ndim != 2 or x.shape[1] != n:
-        raise LearnerError(f"these rules ask for inputs of {n} numbers, (T, {n}); got {x.shape}")
-    if not np.isfinite(x).all():
-        row = int(np.flatnonzero(~np.isfinite(x).all(axis=1))[0])
-        raise LearnerError(f"input {row} is not finite: {x[row].tolist()}")
-    return x
+    return inputs_of(inputs, table.lower.shape[1])

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from lcs.arrays import Array, Booleans, Integers
 from lcs.faults import LearnerError
+from lcs.given import input_of, inputs_of, reward_of
 from lcs.problems.steps import Plane, World
 from lcs.rules.table import RuleTable
 from lcs.steps.config import Config
@@ -58,6 +59,10 @@ class StepsLearner:
         """How many there are."""
         return int(self.bodies.meals.shape[1])
 
+    @property
+    def _n(self) -> int:
+        return int(self.bodies.lower.shape[1])
+
     def act(self, x: npt.ArrayLike) -> int:
         """The action to take at a place (n,): the best, or by chance any; `learn` follows.
 
@@ -68,7 +73,7 @@ class StepsLearner:
             raise LearnerError(
                 "the action before waits for what it led to: call learn(reward, next_x, done) first"
             )
-        place = self._checked(np.asarray(x, np.float64)[None])[0]
+        place = input_of(x, self._n)
         said = int(voting.try_once(self.bodies, place, self.config.explore, self.chance))
         self._waits = (place, said)
         return said if said >= 0 else -1 - said
@@ -83,14 +88,10 @@ class StepsLearner:
         """
         if self._waits is None:
             raise LearnerError("no action waits for what it led to: call act(x) first")
-        if not np.isfinite(reward):
-            raise LearnerError(f"a reward is a finite number, and {reward} is none")
-        after = self._checked(np.asarray(next_x, np.float64)[None])[0]
+        given, after = reward_of(reward), input_of(next_x, self._n)
         place, said = self._waits
         if said >= 0:
-            voting.remember_once(
-                self.land, place, said, float(reward), after, bool(done), self.chance
-            )
+            voting.remember_once(self.land, place, said, given, after, bool(done), self.chance)
         self._waits = None
         if done:
             self.end_episode()
@@ -141,7 +142,7 @@ class StepsLearner:
             LearnerError: the world has other actions or inputs.
         """
         self._fits(world)
-        places = self._checked(np.asarray(starts, np.float64))
+        places = inputs_of(starts, self._n)
         told = np.zeros((len(places), 3))
         ties = np.random.default_rng(0)
         episodes.follow(world.square, self.bodies, places, longest, told, ties, outside)
@@ -155,7 +156,7 @@ class StepsLearner:
         Raises:
             LearnerError: not n finite numbers each.
         """
-        x = self._checked(np.asarray(inputs, np.float64))
+        x = inputs_of(inputs, self._n)
         actions, worth = np.zeros(len(x), np.int64), np.zeros((len(x), self.actions))
         voting.decide(self.bodies, x, actions, worth, np.random.default_rng(0))
         return actions, worth
@@ -168,7 +169,7 @@ class StepsLearner:
         kept = min(int(self.land.seen[0]), len(self.land.action))
         places = self.land.x[:kept]
         low, high = (places.min(axis=0), places.max(axis=0)) if kept else (0.0, 1.0)
-        n = self.bodies.lower.shape[1]
+        n = self._n
         low, high = np.broadcast_to(low, n).astype(float), np.broadcast_to(high, n).astype(float)
         body, action = np.nonzero(self.bodies.meals)
         return RuleTable(
@@ -218,22 +219,12 @@ class StepsLearner:
         return Numbers(c.explore, c.discount, c.fed, c.families, c.generations, c.longest)
 
     def _fits(self, world: World) -> None:
-        n = self.bodies.lower.shape[1]
+        n = self._n
         if (world.actions, world.inputs) != (self.actions, n):
             raise LearnerError(
                 f"the world has {world.actions} actions and {world.inputs} inputs, "
                 f"the learner {self.actions} and {n}"
             )
-
-    def _checked(self, inputs: Array) -> Array:
-        x = np.ascontiguousarray(inputs, np.float64)
-        n = self.bodies.lower.shape[1]
-        if x.ndim != 2 or x.shape[1] != n:
-            raise LearnerError(f"an input is {n} numbers, and not of shape {x.shape[1:]}")
-        if not np.isfinite(x).all():
-            row = int(np.flatnonzero(~np.isfinite(x).all(axis=1))[0])
-            raise LearnerError(f"input {row} is not finite: {x[row].tolist()}")
-        return x
 
 
 def _told(told: Array, bodies: Integers) -> Episodes:
