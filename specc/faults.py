@@ -6,7 +6,11 @@ from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.source import Source
 
 
+def mistake(code: str, named: Path | str, message: str, remedy: str = "") -> Diagnostic:
+    """What is wrong with what the user named: a file, or `x=1`."""
+    return Diagnostic(code, Severity.ERROR, message, Source(str(named), ""), None, help=remedy)
+
+
 def fault(code: str, named: Path | str, message: str, remedy: str = "") -> SpecError:
-    """The error about what the user named: a file, or `x=1`."""
-    source = Source(str(named), "")
-    return SpecError([Diagnostic(code, Severity.ERROR, message, source, None, help=remedy)])
+    """The error about one mistake."""
+    return SpecError([mistake(code, named, message, remedy)])

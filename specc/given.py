@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
 from runtime.program import Control, Kind, State
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError
+from spec_schema.diagnostics import Diagnostic, SpecError
 from spec_schema.expressions.evaluate import evaluate
 from spec_schema.expressions.parse import parse
 from spec_schema.expressions.rewrite import names_in
 from spec_schema.faults import ExpressionError, UnitFault
-from spec_schema.source import Source
 from spec_schema.suggest import did_you_mean, there_are
 from spec_schema.units import Unit, parse_unit, quantity_in
+from specc.faults import fault, mistake
 
 Value: TypeAlias = float | str
 Part: TypeAlias = State | Control
@@ -37,12 +37,13 @@ def settings_for(
         if name not in known:
             remedy = (elsewhere or {}).get(name) or did_you_mean(name, list(known))
             remedy = remedy or there_are(list(known))
-            problems.append(_problem("V341", name, value, f"no {what} is named '{name}'", remedy))
+            message = f"no {what} is named '{name}'"
+            problems.append(mistake("V341", f"{name}={value}", message, remedy))
             continue
         try:
             found[name] = _inside(known[name], value)
         except ValueError as error:
-            problems.append(_problem("V342", name, value, str(error), _example(known[name])))
+            problems.append(mistake("V342", f"{name}={value}", str(error), _example(known[name])))
     if problems:
         raise SpecError(problems)
     return found
@@ -54,14 +55,13 @@ def seconds(value: Value, name: str = "duration") -> float:
     Raises:
         SpecError: it is none, or not positive.
     """
+    named = f"{name}={value}"
     try:
         found = _si(value, parse_unit("s"))
     except ValueError as error:
-        problem = _problem("V342", name, value, str(error), "write 20, '20 s' or '2 min'")
-        raise SpecError([problem]) from error
+        raise fault("V342", named, str(error), "write 20, '20 s' or '2 min'") from error
     if not 0.0 < found < float("inf"):
-        problem = _problem("V342", name, value, "it must be positive", "write 0.1 s, 20 s or 2 min")
-        raise SpecError([problem])
+        raise fault("V342", named, "it must be positive", "write 0.1 s, 20 s or 2 min")
     return found
 
 
@@ -102,8 +102,3 @@ def _example(part: Part) -> str:
 
 def _suffix(part: Part) -> str:
     return "" if part.unit.text == "1" else f" {part.unit.text}"
-
-
-def _problem(code: str, name: str, value: Value, message: str, remedy: str) -> Diagnostic:
-    source = Source(f"{name}={value}", "")
-    return Diagnostic(code, Severity.ERROR, message, source, None, help=remedy)

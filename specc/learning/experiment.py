@@ -10,9 +10,9 @@ from lcs.problems.problem import Problem
 from lcs.problems.registry import PROBLEMS, Offer, Value, made, table_offer
 from spec_schema.diagnostics import Diagnostic, SpecError
 from spec_schema.suggest import did_you_mean, there_are
-from specc.faults import fault
+from specc.faults import fault, mistake
 from specc.learning.learners import LEARNERS, learner_for
-from specc.learning.settings import choices, configured, problem, value_of
+from specc.learning.settings import choices, configured, value_of
 
 TABLE: Final = ".csv"
 VERSION: Final = 1
@@ -112,13 +112,13 @@ def _values(offer: Offer, given: Mapping[str, str], named: str) -> dict[str, Val
         if name not in offer.defaults:
             remedy = did_you_mean(name, list(offer.defaults)) or there_are(list(offer.defaults))
             message = f"{named} is not made with '{name}'"
-            problems.append(problem("V341", f"{name}={text}", message, remedy))
+            problems.append(mistake("V341", f"{name}={text}", message, remedy))
             continue
         like = offer.defaults[name]
         try:
             values[name] = value_of(text, like)
         except ValueError as error:
-            problems.append(problem("V342", f"{name}={text}", str(error), choices(like)))
+            problems.append(mistake("V342", f"{name}={text}", str(error), choices(like)))
     if problems:
         raise SpecError(problems)
     return values

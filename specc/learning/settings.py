@@ -8,16 +8,16 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from enum import Enum
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
-from spec_schema.diagnostics import Diagnostic, Severity, SpecError
-from spec_schema.source import Source
+from spec_schema.diagnostics import Diagnostic, SpecError
 from spec_schema.suggest import did_you_mean, did_you_mean_one_of
+from specc.faults import mistake
 
 Config = TypeVar("Config")
 
-YES = ("yes", "true", "on", "1")
-NO = ("no", "false", "off", "0")
+YES: Final = ("yes", "true", "on", "1")
+NO: Final = ("no", "false", "off", "0")
 
 
 def configured(config: Config, given: Mapping[str, str], learner: str) -> Config:
@@ -37,7 +37,7 @@ def configured(config: Config, given: Mapping[str, str], learner: str) -> Config
         try:
             values[path] = _allowed(value_of(text, known[path]))
         except ValueError as error:
-            problems.append(problem("V342", f"{name}={text}", str(error), choices(known[path])))
+            problems.append(mistake("V342", f"{name}={text}", str(error), choices(known[path])))
     if problems:
         raise SpecError(problems)
     found: Config = _replaced(config, values)
@@ -108,11 +108,6 @@ def choices(value: object) -> str:
     return f"write a word, such as {value or 'name'}"
 
 
-def problem(code: str, named: str, message: str, remedy: str) -> Diagnostic:
-    """What is wrong with what a user gave on the command line."""
-    return Diagnostic(code, Severity.ERROR, message, Source(named, ""), None, help=remedy)
-
-
 def _allowed(value: object) -> object:
     """A constant: none of any learner is below 0."""
     if isinstance(value, int | float) and value < 0:
@@ -152,7 +147,7 @@ def _unknown(
         holding = [_shortest(path, known) for path in known if _folded(name) in _folded(path[-1])]
         remedy = did_you_mean_one_of(holding[:4])
     remedy = remedy or "`specc learn --list` tells all that can be set"
-    return problem("V341", f"{name}={text}", f"{learner} has no constant '{name}'", remedy)
+    return mistake("V341", f"{name}={text}", f"{learner} has no constant '{name}'", remedy)
 
 
 def _replaced(config: Any, values: Mapping[tuple[str, ...], object]) -> Any:
