@@ -1,15 +1,15 @@
 """Learning curves: what tests showed, against how many problems were tried before."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
 from lcs.arrays import Array, Booleans, Integers
 from lcs.course import Course
+from lcs.problems.rewards import RIGHT, WRONG
 
-REWARD_RANGE = 2000.0
-"""From -1000 to 1000 (thesis, 4.3.2)."""
+REWARD_RANGE: Final = RIGHT - WRONG
 
 
 @final

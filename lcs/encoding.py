@@ -7,7 +7,7 @@ rule's interval says "is", "is not" or nothing about it. A gap (None, NaN, NA) b
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias, final
+from typing import Any, Final, TypeAlias, final
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from lcs.faults import LearnerError
 from lcs.inputs import Input
 
 Cell: TypeAlias = float | str | None
-GAPS = ("NAType", "NaTType")
+GAPS: Final = ("NAType", "NaTType")
 """What pandas calls its own gaps."""
 
 

@@ -30,14 +30,7 @@ from lcs.problems.rewards import RIGHT, WRONG, rewards_of
 from lcs.rules.belief import Belief, believe
 from lcs.rules.table import RuleTable
 from lcs.saving import load_one_of
-from lcs.state import (
-    State,
-    array_named,
-    chance_from,
-    from_plain,
-    plain_of,
-    plain_of_chance,
-)
+from lcs.state import State, array_named, chance_from, from_plain, plain_of, plain_of_chance
 
 SEEDS: Final = 2**31 - 1
 

@@ -8,6 +8,7 @@ from lcs.arrays import Array, Integers
 
 RIGHT: Final = 1000.0
 WRONG: Final = -1000.0
+"""Both are those of the thesis (4.3.2)."""
 
 
 def rewards_of(right: Integers, classes: int, flipped: float, chance: np.random.Generator) -> Array:

@@ -1,7 +1,7 @@
 """How probable each class is, by the rules, where one class of them is right."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -9,7 +9,9 @@ from lcs.arrays import Array, Booleans
 from lcs.rules.kernels import assessing
 from lcs.rules.table import RuleTable
 
-TINY, HUGE = 1e-12, 1e150
+TINY: Final = 1e-12
+HUGE: Final = 1e150
+"""Weights are kept between both, so that no sum of them is 0 or infinite."""
 
 
 @final

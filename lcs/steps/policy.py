@@ -10,7 +10,8 @@ from lcs.rules.experience import Experience
 from lcs.rules.table import RuleTable
 from lcs.steps.learner import StepsLearner
 
-GOOD, WORSE = 1.0, 0.0
+GOOD: Final = 1.0
+WORSE: Final = 0.0
 """The levels of the rules."""
 JUDGED_WRONGLY: Final = 0.05
 """The share of places where an action may be judged wrongly; small islands are passed over."""

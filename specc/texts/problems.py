@@ -1,13 +1,14 @@
 """What there is to learn and who learns it, as text for people and as a record for programs."""
 
-from typing import Any
+from typing import Any, Final
 
 from lcs.problems.registry import COLUMNS, MEANINGS, PROBLEMS, SPLIT
 from specc.learning.learners import LEARNERS
 from specc.learning.settings import choices, listed, shown
 from verifier.report.layout import INDENT, section, table
 
-TABLE = "FILE.csv"
+TABLE: Final = "FILE.csv"
+"""How the problem of a table is listed."""
 
 
 def listing_text(learner: str) -> str:
