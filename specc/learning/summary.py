@@ -53,7 +53,7 @@ class Summary:
     births: int
     deaths: int
     seconds: float
-    thinned: Thinned | None
+    thinned: Thinned
 
     @property
     def per_second(self) -> float:
@@ -61,7 +61,7 @@ class Summary:
         return self.cycles / max(self.seconds, 1e-9)
 
 
-def summed_up(run: Run, problem: Problem, count: int, thinned: Thinned | None) -> Summary:
+def summed_up(run: Run, problem: Problem, count: int, thinned: Thinned) -> Summary:
     """The figures of a run, tested on so many fresh problems."""
     course, right = run.so_far()
     x, classes = fresh(problem, run.seed, count)

@@ -72,9 +72,8 @@ def _performance(one: Summary) -> str:
 def _rules(one: Summary) -> str:
     told = f"{one.rules:,} at the end, {one.most_rules:,} at most"
     told += f" (when {one.most_rules_at:,} cycles were learnt from)"
-    if one.thinned is not None:
-        told += f"; {one.thinned.rules:,} after compaction, {_percent(one.thinned.accuracy)} right"
-    return told
+    few = one.thinned
+    return f"{told}; {few.rules:,} after compaction, {_percent(few.accuracy)} right"
 
 
 def _mean_text(learnt: Learnt) -> list[str]:
