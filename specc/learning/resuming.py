@@ -6,6 +6,7 @@ and how long it took. A run that goes on from it gives the same bits as one that
 
 import io
 import zipfile
+import zlib
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
@@ -27,6 +28,12 @@ NARROW: Final = {
     "deaths": np.int32,
 }
 """How columns of a course are kept."""
+
+UNREADABLE: Final = (
+    *(LearnerError, KeyError, ValueError, EOFError),
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError),
+)
+"""What a file that is damaged anywhere raises while it is unpacked."""
 
 DAMAGED: Final = "delete it, and its run begins anew"
 
@@ -80,5 +87,5 @@ def taken_up(path: Path) -> Run:
                 int(kept["done"]),
                 float(kept["seconds"]),
             )
-    except (LearnerError, KeyError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except UNREADABLE as error:
         raise fault("V404", path, f"this checkpoint can't be read: {error}", DAMAGED) from error

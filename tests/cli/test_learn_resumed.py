@@ -14,11 +14,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lcs.saving import as_bytes
+from spec_schema.diagnostics import SpecError
 from specc.cli import main
 from specc.cli.interrupts import postponed
 from specc.learning import running
 from specc.learning.experiment import Experiment, config_of, problem_of
 from specc.learning.learning import learnt_from
+from specc.learning.resuming import taken_up
 from specc.learning.warming import is_warm, warm
 
 COMMAND = (
@@ -187,6 +190,24 @@ def test_what_is_damaged_is_told_and_not_a_traceback(
     told = capsys.readouterr().err
     assert re.search(rf"{file}: error\[V404\]: this ", told)
     assert "help" in told
+
+
+def test_a_checkpoint_with_a_bit_changed_anywhere_is_refused_or_the_same(kept: Path) -> None:
+    content = (kept / "seed_0" / "checkpoint.npz").read_bytes()
+    same, path = (
+        as_bytes(taken_up(kept / "seed_0" / "checkpoint.npz").learner.state()),
+        Path("c.npz"),
+    )
+    refused = 0
+    for at in np.linspace(0, len(content) - 1, 150).astype(int):
+        path.write_bytes(content[:at] + bytes([content[at] ^ 0x10]) + content[at + 1 :])
+        try:
+            found = taken_up(path)
+        except SpecError:
+            refused += 1
+        else:
+            assert as_bytes(found.learner.state()) == same
+    assert refused > 100
 
 
 def test_ctrl_c_without_a_folder_says_that_nothing_was_kept(
