@@ -13,6 +13,9 @@ from lcs.state import Arrays, arrays_of, filled
 ROOM: Final = 1024
 """For rules and for corpses of each action, at first."""
 
+SAMPLE: Final = 1500
+"""How many foods are enough while a body takes shape."""
+
 
 @final
 @dataclass(slots=True)
@@ -106,6 +109,9 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         met=np.zeros(a, np.int64),
         noise=np.zeros(a),
         season=np.full(a, config.beyond.season),
+        order=np.zeros((a, n, known), np.int64),
+        sample=np.zeros((a, n, min(known, SAMPLE)), np.int64),
+        ordered=np.zeros(a, np.int64),
     )
     neighbors = 1 + max(config.breeding_neighbors, config.corpse_neighbors)
     scratch = Scratch(

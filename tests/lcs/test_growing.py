@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from lcs.alcsr.config import GROWN, Beyond, Config
 from lcs.alcsr.kernels.growing import grow_along
 from lcs.alcsr.kernels.layout import Land, Scratch
-from lcs.alcsr.kernels.remembering import count_outside, penalty_of
+from lcs.alcsr.kernels.remembering import count_outside, penalty_of, remember
+from lcs.alcsr.kernels.sorting import sort_in
 from lcs.alcsr.learner import ALCSR
 from lcs.alcsr.population import Population, empty
 from lcs.arrays import Array
@@ -26,7 +27,8 @@ def grown_along(land: Land, scratch: Scratch, seed: float, reward: float, penalt
     """Grow `scratch.body` of landscape 0 along its first dimension."""
     total = land.met[0]
     count_outside(land, 0, total, scratch.body[0], scratch.body[1], scratch.outside)
-    grow_along(land, scratch, 0, 0, total, seed, reward, penalty)
+    sort_in(land, scratch, 0)
+    grow_along(land, scratch, 0, 0, land.order[0, 0, :total], seed, reward, penalty)
 
 
 @kernel
@@ -72,6 +74,39 @@ def test_a_body_takes_the_interval_that_holds_most(seed: int, price: float, step
     assert low <= 0.5 < up
     assert population.scratch.body[0, 1] == BODY[0, 1]
     assert score(values, worth, low, up) == pytest.approx(best, abs=1e-9)
+
+
+@kernel
+def remembered_and_sorted(land: Land, scratch: Scratch, x: Array, reward: float) -> None:
+    """Food on landscape 0, and what follows for the orders."""
+    remember(land, 0, x, reward)
+    sort_in(land, scratch, 0)
+
+
+@pytest.mark.parametrize("every", [1, 7])
+def test_food_stays_in_order_while_old_food_is_forgotten(every: int) -> None:
+    chance = np.random.default_rng(3)
+    population = land_of(np.zeros((40, 2)), np.zeros(40, np.bool_))
+    land, scratch = population.land, population.scratch
+    land.met[0] = 0
+    for turn in range(150):
+        x = chance.integers(0, 20, 2) / 20
+        if turn % every:
+            kept_only(land, x)
+            continue
+        remembered_and_sorted(land, scratch, x, 1000.0)
+        total = min(turn + 1, 40)
+        for i in range(2):
+            order = land.order[0, i, :total]
+            assert sorted(order.tolist()) == list(range(total))
+            assert np.all(np.diff(land.foods[0, i, order]) >= 0.0)
+            assert sorted(land.sample[0, i, :total].tolist()) == list(range(total))
+
+
+@kernel
+def kept_only(land: Land, x: Array) -> None:
+    """Food on landscape 0 that is not sorted in yet."""
+    remember(land, 0, x, 1000.0)
 
 
 @pytest.mark.parametrize(("share", "noise"), [(0.5, 0.1), (0.5, 0.2), (0.25, 0.01), (0.9, 0.05)])

@@ -3,7 +3,7 @@
 Dimension by dimension a body takes the interval around its seed that holds most food of its own
 type, less a penalty for each other one. The penalty rises from about what chance would give, so
 that a body finds its shape before it shuns the last wrong food. With n dimensions and N foods one
-pass costs n N steps and the sorting of what lies in the body's slab.
+pass costs n N steps: foods are kept in order by each input.
 """
 
 import numpy as np
@@ -11,11 +11,11 @@ import numpy as np
 from lcs.alcsr.kernels.layout import Land, Numbers, Scratch
 from lcs.alcsr.kernels.remembering import (
     count_outside,
-    is_inside,
     known,
     meals_in,
     penalty_of,
     share_of,
+    top_of,
 )
 from lcs.arrays import Array, Integers
 from lcs.compiled import part
@@ -26,9 +26,6 @@ SHAPING = np.array([0.9, 1.0, 1.2, 1.5, 2.0, 3.0, 5.0])
 RESHAPING = np.array([1.5, 2.0, 4.0])
 SMOOTHING = np.array([3.0])
 """The same for a body that was pulled out of shape, and for one that only grows on."""
-
-SAMPLE = 1500
-"""How many foods are enough while a body takes shape."""
 
 LEAST, MOST = 0.1, 10.0
 """By how much penalties are scaled for rare and for common food."""
@@ -128,15 +125,15 @@ def shape(
     Returns how many right and wrong foods it holds.
     """
     total = known(land, a)
+    few = land.sample[a, :, :total]
     lower, upper = scratch.body[0], scratch.body[1]
-    few = min(total, SAMPLE)
-    count_outside(land, a, few, lower, upper, scratch.outside)
+    count_outside(land, a, few.shape[1], lower, upper, scratch.outside)
     for penalty in penalties:
         if penalty * scaled < final:
             grow(land, scratch, a, few, x, reward, penalty * scaled, rng)
     count_outside(land, a, total, lower, upper, scratch.outside)
     for _ in range(passes):
-        grow(land, scratch, a, total, x, reward, final, rng)
+        grow(land, scratch, a, land.order[a, :, :total], x, reward, final, rng)
     return meals_in(land, a, reward, scratch.outside)
 
 
@@ -145,19 +142,19 @@ def grow(
     land: Land,
     scratch: Scratch,
     a: int,
-    total: int,
+    orders: Integers,
     x: Array,
     reward: float,
     penalty: float,
     rng: np.random.Generator,
 ) -> None:
-    """One pass over all dimensions, in random order, among the first `total` foods."""
+    """One pass over all dimensions, in random order, among foods in their orders (n, N)."""
     axes = scratch.axes
     for i in range(axes.size - 1, 0, -1):
         j = int(rng.random() * (i + 1))
         axes[i], axes[j] = axes[j], axes[i]
     for i in axes:
-        grow_along(land, scratch, a, i, total, x[i], reward, penalty)
+        grow_along(land, scratch, a, i, orders[i], x[i], reward, penalty)
 
 
 @part
@@ -166,92 +163,75 @@ def grow_along(
     scratch: Scratch,
     a: int,
     i: int,
-    total: int,
+    order: Integers,
     seed: float,
     reward: float,
     penalty: float,
 ) -> None:
-    """The best interval around the seed in dimension i; bounds stand midway to what is left out."""
+    """The best interval around the seed in dimension i, among the first foods in their order by it.
+
+    Bounds stand midway to what is left out.
+    """
     values, signs = scratch.values, scratch.signs
     lower, upper, high = scratch.body[0], scratch.body[1], land.high[i]
-    foods, outside = land.foods[a, i], scratch.outside
-    low, up = lower[i], upper[i]
-    count = 0
-    for k in range(total):
-        others = outside[k]
-        if others == 0 or (others == 1 and not is_inside(foods[k], low, up, high)):
-            values[count] = foods[k]
-            signs[count] = 1.0 if land.rewards[a, k] == reward else -penalty
+    foods, rewards, outside = land.foods[a, i], land.rewards[a], scratch.outside
+    low, top = lower[i], top_of(upper[i], high)
+    count, middle = 0, 0
+    for k in order:
+        value, others = foods[k], outside[k]
+        if others == 0 or (others == 1 and (value < low or value >= top)):
+            values[count] = value
+            signs[count] = 1.0 if rewards[k] == reward else -penalty
             count += 1
-    order = ranked(values[:count])
-    middle = first_from(values, order, seed)
-    lower[i] = end_below(values, signs, order, middle, seed, land.low[i])
-    upper[i] = end_above(values, signs, order, middle, seed, high)
-    if lower[i] == low and upper[i] == up:
+            middle += value < seed
+    lower[i] = end_below(values, signs, middle, seed, land.low[i])
+    upper[i] = end_above(values, signs, middle, count, seed, high)
+    new_low, new_top = lower[i], top_of(upper[i], high)
+    if new_low == low and new_top == top:
         return
-    for k in range(total):
-        was = is_inside(foods[k], low, up, high)
-        now = is_inside(foods[k], lower[i], upper[i], high)
-        outside[k] += was - now
-
-
-@part
-def ranked(values: Array) -> Integers:
-    """The places of the values in rising order; sorting is compiled once, here."""
-    order: Integers = np.argsort(values)
-    return order
-
-
-@part
-def first_from(values: Array, order: Integers, seed: float) -> int:
-    """The first in the order whose value is not below the seed."""
-    first, after = 0, order.size
-    while first < after:
-        half = (first + after) // 2
-        if values[order[half]] < seed:
-            first = half + 1
-        else:
-            after = half
-    return first
+    for k in range(order.size):
+        value = foods[k]
+        was_out = value < low or value >= top
+        is_out = value < new_low or value >= new_top
+        outside[k] += is_out - was_out
 
 
 @part
 def end_above(
-    values: Array, signs: Array, order: Integers, middle: int, seed: float, high: float
+    values: Array, signs: Array, middle: int, count: int, seed: float, high: float
 ) -> float:
     """The upper bound with the highest sum of signs from the seed on; of equal ones the furthest.
 
-    A bound parts no foods of the same value.
+    values, signs: so many, in order; those from `middle` on are not below the seed. A bound parts
+    no foods of the same value.
     """
     total, best, after, any_right = 0.0, 0.0, middle, False
-    for j in range(middle, order.size):
-        total += signs[order[j]]
-        any_right = any_right or signs[order[j]] > 0.0
-        if j + 1 == order.size or values[order[j + 1]] > values[order[j]]:
-            if (any_right and total >= best) or values[order[j]] == seed:
+    for j in range(middle, count):
+        total += signs[j]
+        any_right = any_right or signs[j] > 0.0
+        if j + 1 == count or values[j + 1] > values[j]:
+            if (any_right and total >= best) or values[j] == seed:
                 best, after = total, j + 1
             any_right = False
-    if after == order.size:
+    if after == count:
         return high
-    last = values[order[after - 1]] if after > middle else seed
-    return float(max(0.5 * (last + values[order[after]]), np.nextafter(last, np.inf)))
+    last = values[after - 1] if after > middle else seed
+    return float(max(0.5 * (last + values[after]), np.nextafter(last, np.inf)))
 
 
 @part
-def end_below(
-    values: Array, signs: Array, order: Integers, middle: int, seed: float, low: float
-) -> float:
+def end_below(values: Array, signs: Array, middle: int, seed: float, low: float) -> float:
     """The lower bound with the highest sum of signs below the seed, as `end_above`."""
     total, best, first, any_right = 0.0, 0.0, middle, False
     for j in range(middle - 1, -1, -1):
-        total += signs[order[j]]
-        any_right = any_right or signs[order[j]] > 0.0
-        if j == 0 or values[order[j - 1]] < values[order[j]]:
+        total += signs[j]
+        any_right = any_right or signs[j] > 0.0
+        if j == 0 or values[j - 1] < values[j]:
             if any_right and total >= best:
                 best, first = total, j
             any_right = False
     if first == 0:
         return low
-    inner = values[order[first]] if first < middle else seed
-    beyond = values[order[first - 1]]
+    inner = values[first] if first < middle else seed
+    beyond = values[first - 1]
     return float(max(0.5 * (inner + beyond), min(inner, np.nextafter(beyond, np.inf))))

@@ -53,6 +53,8 @@ class Land(NamedTuple):
 
     foods (A, n, N), rewards (A, N): the last N, met (A,) of all there were. noise (A,): the share
     of wrong rewards. season (A,): after how much food the season ends.
+    order (A, n, N): the places of these foods, by each input, when there had been `ordered` (A,);
+    sample (A, n, S): those of the first S places.
     """
 
     low: Array
@@ -62,6 +64,9 @@ class Land(NamedTuple):
     met: Integers
     noise: Array
     season: Integers
+    order: Integers
+    sample: Integers
+    ordered: Integers
 
 
 class Numbers(NamedTuple):

@@ -77,19 +77,24 @@ def is_inside(value: float, lower: float, upper: float, high: float) -> bool:
 
 
 @part
+def top_of(upper: float, high: float) -> float:
+    """The first value above a body: its upper bound, or just beyond the end of the known range."""
+    return float(np.nextafter(upper, np.inf)) if upper >= high else upper
+
+
+@part
 def count_outside(
     land: Land, a: int, total: int, lower: Array, upper: Array, outside: Integers
 ) -> None:
     """In how many dimensions each of the first `total` foods lies outside of a body (n,)."""
     outside[:total] = 0
     for i in range(lower.size):
-        low, up, high = lower[i], upper[i], land.high[i]
-        if low <= land.low[i] and up >= high:
+        low, top = lower[i], top_of(upper[i], land.high[i])
+        if low <= land.low[i] and top > land.high[i]:
             continue
         foods = land.foods[a, i]
         for k in range(total):
-            if not is_inside(foods[k], low, up, high):
-                outside[k] += 1
+            outside[k] += foods[k] < low or foods[k] >= top
 
 
 @part

@@ -3,7 +3,6 @@
 import numpy as np
 
 from lcs.alcsr.kernels.feeding import remove
-from lcs.alcsr.kernels.growing import ranked
 from lcs.alcsr.kernels.layout import STARVED, Land, Numbers, Rules, Scratch
 from lcs.alcsr.kernels.living import bear_sprout
 from lcs.alcsr.kernels.reaching import reach
@@ -14,6 +13,7 @@ from lcs.alcsr.kernels.remembering import (
     least_evidence,
     meals_in,
 )
+from lcs.alcsr.kernels.sorting import ranked
 from lcs.arrays import Array
 from lcs.compiled import part
 

@@ -19,6 +19,7 @@ from lcs.alcsr.kernels.layout import (
 )
 from lcs.alcsr.kernels.living import grow_again, settle
 from lcs.alcsr.kernels.seasons import end_season
+from lcs.alcsr.kernels.sorting import sort_in
 from lcs.arrays import Array
 from lcs.compiled import kernel
 
@@ -36,6 +37,7 @@ def tend(
     """Go on where a cycle stopped, at x (n,), after the reward of `scratch.progress[ACTION]`."""
     progress = scratch.progress
     a = progress[ACTION]
+    sort_in(land, scratch, a)
     if progress[STAGE] == UNEATEN:
         is_settled = settle(rules, land, numbers, scratch, a, x, reward, rng)
         progress[STAGE] = LIVED if is_settled else UNCOVERED
