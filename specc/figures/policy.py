@@ -32,8 +32,8 @@ def draw_policy(learner: StepsLearner, world: Plane, chance: np.random.Generator
     x, y = np.meshgrid(centres, centres)
     actions, worth = learner.decide(np.column_stack((x.ravel(), y.ravel())))
     with look():
-        figure = Figure(figsize=(9.6, 4.8))
-        grid = framed(figure, 1, 2, (0.6, 0.15, 0.55, 0.75))
+        figure = Figure(figsize=(10.0, 4.8))
+        grid = framed(figure, 1, 2, (0.6, 0.55, 0.55, 0.75))
         grid.update(wspace=0.24)
         does, expects = (figure.add_subplot(grid[k]) for k in range(2))
         _draw_actions(does, actions.reshape(FINE, FINE), learner)
