@@ -196,7 +196,7 @@ def test_messages_in_the_list_of_errors_are_those_of_the_golden_files() -> None:
             assert line in printed
 
 
-@pytest.mark.parametrize("name", ["python.md", "learning.md"])
+@pytest.mark.parametrize("name", ["python.md", "learning.md", "rules.md"])
 def test_the_examples_of_a_page_print_what_they_say(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
