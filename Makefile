@@ -82,6 +82,9 @@ study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs readings
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs nearest
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs idle
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs beyond --at-once 1
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs switches
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs numbers
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.xcsr
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.classifier
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.scitos

@@ -21,6 +21,7 @@ from lcs.alcsr.kernels.layout import (
 )
 from lcs.alcsr.kernels.tending import tend
 from lcs.alcsr.population import Population, all_arrays, empty, restored
+from lcs.alcsr.readings import RangeIs
 from lcs.arrays import Array, Integers
 from lcs.course import Course
 from lcs.faults import LearnerError
@@ -57,7 +58,12 @@ class ALCSR:
         inputs: how many numbers an input has.
         config: the constants, and how open places of the thesis are read.
         reward_range: from the lowest to the highest reward.
+        low, high: the declared range of the inputs: of all, or (n,). What is experienced widens it,
+            but in the reading `RangeIs.DECLARED`, which needs one.
         seed: of all its chance.
+
+    Raises:
+        LearnerError: that reading has no range, or a range is none.
     """
 
     def __init__(
@@ -67,10 +73,15 @@ class ALCSR:
         config: Config | None = None,
         *,
         reward_range: float = REWARD_RANGE,
+        low: npt.ArrayLike = np.inf,
+        high: npt.ArrayLike = -np.inf,
         seed: int = 0,
     ) -> None:
         self.config = config or Config()
         self.population: Population = empty(actions, inputs, self.config, reward_range)
+        self.population.land.low[:] = low
+        self.population.land.high[:] = high
+        self._refuse_no_range()
         self.chance = np.random.default_rng(seed)
         self._waits_with: Array | None = None
 
@@ -205,7 +216,14 @@ class ALCSR:
             LearnerError: the state is of another version, or damaged.
         """
         kept = from_plain(Kept, state.plain, "values")
-        learner = cls(kept.actions, kept.inputs, kept.config, reward_range=kept.reward_range)
+        learner = cls(
+            kept.actions,
+            kept.inputs,
+            kept.config,
+            reward_range=kept.reward_range,
+            low=0.0,  # until what was known of the land is restored
+            high=1.0,
+        )
         learner.population = restored(learner.population, state.arrays)
         learner.chance = chance_from(kept.chance)
         if kept.is_trying:
@@ -234,6 +252,16 @@ class ALCSR:
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population
         return parts.rules, parts.corpses, parts.land, parts.numbers, parts.scratch
+
+    def _refuse_no_range(self) -> None:
+        land = self.population.land
+        is_declared = bool(np.isfinite(land.low).all() and np.isfinite(land.high).all())
+        if is_declared and not (land.low < land.high).all():
+            raise LearnerError("a range is from low to a higher high, for each input")
+        if self.config.readings.range_is is RangeIs.DECLARED and not is_declared:
+            raise LearnerError(
+                "RangeIs.DECLARED needs the range of the inputs: give low= and high="
+            )
 
     def _refuse_while_waiting(self) -> None:
         if self._waits_with is not None:

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from lcs.alcsr.config import Config
+from lcs.alcsr.config import Config, Readings
 from lcs.alcsr.definition.accuracy import feed
 from lcs.alcsr.definition.covering import cover
 from lcs.alcsr.definition.cycle import live_on
 from lcs.alcsr.definition.organisms import Landscape, World, covers, experience
 from lcs.alcsr.learner import ALCSR
+from lcs.alcsr.readings import RangeIs
 from lcs.faults import LearnerError
 from lcs.problems.classes import SKEWED, checkerboard, multiplexer
 
@@ -134,3 +135,19 @@ def test_many_cycles_are_refused_while_a_reward_is_owed() -> None:
         learner.run([[0.1, 0.2]], [[1.0, -1.0]])
     with pytest.raises(LearnerError, match="waits for its reward"):
         learner.teach([[0.1, 0.2]], [[1.0, -1.0]])
+
+
+def test_a_range_that_is_declared_has_to_be_given_and_stays() -> None:
+    declared = Config(readings=Readings(range_is=RangeIs.DECLARED))
+    with pytest.raises(LearnerError, match="give low= and high="):
+        ALCSR(2, 2, declared)
+    with pytest.raises(LearnerError, match="to a higher high"):
+        ALCSR(2, 2, low=[0.0, 1.0], high=1.0)
+
+    learner = ALCSR(2, 2, declared, low=0.0, high=1.0)
+    x, rewards, _ = checkerboard(2).drawn(3_000, np.random.default_rng(1))
+    learner.run(x, rewards)
+
+    assert learner.rules().high.tolist() == [1.0, 1.0]
+    fresh, _, right = checkerboard(2).drawn(3_000, np.random.default_rng(2))
+    assert np.mean(learner.decide(fresh)[0] == right) > 0.8

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from tests.study.lcs import experiments, idle, pictures, readings
+from tests.study.lcs import beyond, experiments, idle, pictures, readings
 
 STUDIES: Final[dict[str, Callable[[Path, int], None]]] = {
     "experiments": experiments.tell,
@@ -17,6 +17,9 @@ STUDIES: Final[dict[str, Callable[[Path, int], None]]] = {
     "readings": readings.tell,
     "nearest": readings.tell_nearest,
     "idle": idle.tell,
+    "beyond": beyond.tell,
+    "switches": beyond.tell_switches,
+    "numbers": beyond.tell_numbers,
 }
 
 

@@ -71,9 +71,9 @@ def made(wanted: Wanted) -> Run:
     """Run it, until it has too many rules."""
     task = problem(wanted.experiment)
     x, rewards, right = task.drawn(wanted.cycles, np.random.default_rng([wanted.seed, 1]))
-    learner = ALCSR(task.classes, task.inputs, wanted.config, seed=wanted.seed)
-    if wanted.config.readings.range_is is RangeIs.DECLARED:
-        learner.population.land.low[:], learner.population.land.high[:] = 0.0, 1.0
+    is_declared = wanted.config.readings.range_is is RangeIs.DECLARED
+    low, high = (0.0, 1.0) if is_declared else (np.inf, -np.inf)
+    learner = ALCSR(task.classes, task.inputs, wanted.config, low=low, high=high, seed=wanted.seed)
     begun = time.process_time()
     parts = []
     for at in range(0, wanted.cycles, STEP):
