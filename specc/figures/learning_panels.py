@@ -25,7 +25,6 @@ POINTS: Final = 400
 """Of a curve: more are only bytes."""
 
 DASHES: Final = (0.0, (4.0, 1.6))
-DOTS: Final = (0.0, (1.2, 1.2))
 
 
 @final

@@ -42,6 +42,18 @@ def number(value: float, digits: int = 3) -> str:
     return _minus(text.rstrip("0").rstrip(".") if "." in text else text)
 
 
+def range_shown(low: float, high: float) -> tuple[float, float]:
+    """Both ends of a range to a thousandth of it: 0 for 6e-6 to 1.
+
+    >>> range_shown(6e-6, 0.99998), range_shown(0.4935, 5.0), range_shown(-math.inf, 2.0)
+    ((0.0, 1.0), (0.49, 5.0), (-inf, 2.0))
+    """
+    if not math.isfinite(high - low) or high <= low:
+        return low, high
+    digits = 2 - math.floor(math.log10(high - low))
+    return round(low, digits), round(high, digits)
+
+
 def seconds(value: float) -> str:
     """A duration: `0.4 s`, `2 min 5 s`."""
     if value < 120.0:

@@ -19,8 +19,7 @@ from runtime.arrays import Array, Booleans, Integers
 from specc.figures.legend import Entry, Look, draw_legend, line_entry
 from specc.figures.palettes import PALETTES, Palette
 from specc.figures.paper import BELOW, LEFT, LINE, axes_at, heading, new_figure, write_heading
-from specc.figures.quantities import number
-from specc.figures.rules_sheet import range_shown
+from specc.figures.quantities import number, range_shown
 from specc.figures.style import look
 from specc.figures.style_names import Style
 
@@ -37,11 +36,11 @@ COLUMNS: Final = 3
 DOTS: Final = 600
 """Examples that are drawn, at most."""
 
-
 FEW: Final = 20
 """Boxes in a panel: of more none is hatched."""
 
 MARKS: Final = ("o", "s", "^", "x", "v", "D")
+TITLE: Final[Look] = {"loc": "left", "fontsize": 9.5, "pad": 4}
 
 
 @final
@@ -95,10 +94,9 @@ def draw_rules(
     """
     palette = PALETTES[style]
     shown = _shown(table, plane)
-    says = ["decided"] if plane.at is not None else []
-    count = len(says) + table.actions
-    columns = min(COLUMNS, count)
-    rows = math.ceil(count / columns)
+    panels = [*([] if plane.at is None else [None]), *range(table.actions)]  # None: the decision
+    columns = min(COLUMNS, len(panels))
+    rows = math.ceil(len(panels) / columns)
     width = columns * PANEL + (columns - 1) * GAP
     height = rows * (PANEL + ABOVE) + (rows - 1) * GAP
     text = heading(title, [*about, *_where(table, names, plane)], [], width + BESIDE)
@@ -106,23 +104,20 @@ def draw_rules(
     with look(palette):
         figure = new_figure(LEFT + width + BESIDE, below + height + text.height + 0.1, palette)
         entries: list[Entry] = []
-        for k in range(count):
+        for k, action in enumerate(panels):
             row, column = divmod(k, columns)
             left = LEFT + column * (PANEL + GAP)
             up = below + (rows - 1 - row) * (PANEL + ABOVE + GAP)
             axes = axes_at(figure, (left, up), (PANEL, PANEL))
             _frame(axes, table, names, plane, palette)
-            if k < len(says):
-                axes.set_title("what is decided", loc="left", fontsize=9.5, pad=4)
+            if action is None:
+                axes.set_title("what is decided", **TITLE)
                 entries += _draw_decided(axes, table, names, plane, examples, palette)
                 _outline(axes, table, shown & _is_for(table), plane, palette)
             else:
-                action = k - len(says)
-                name = names.actions[action]
-                axes.set_title(f"rules on {name}", loc="left", fontsize=9.5, pad=4)
-                entries += _draw_boxes(
-                    axes, table, shown & (table.action == action), plane, palette
-                )
+                axes.set_title(f"rules on {names.actions[action]}", **TITLE)
+                those = shown & (table.action == action)
+                entries += _draw_boxes(axes, table, those, plane, palette)
         corner = np.array([LEFT + width + 0.2, below + height - ABOVE]) / figure.get_size_inches()
         draw_legend(figure, entries, (float(corner[0]), float(corner[1])))
         top = below + height + text.height

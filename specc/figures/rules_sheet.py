@@ -18,7 +18,7 @@ from runtime.arrays import Array
 from specc.figures.legend import Look
 from specc.figures.palettes import PALETTES, Palette
 from specc.figures.paper import LINE, axes_at, heading, new_figure, write_heading
-from specc.figures.quantities import number
+from specc.figures.quantities import number, range_shown
 from specc.figures.style import look
 from specc.figures.style_names import Style
 from specc.figures.text_width import text_width
@@ -245,15 +245,3 @@ def _bounds(sheet: _Sheet, rule: int, i: int) -> str:
     if upper >= table.high[i]:
         return f"{'>' if is_open else '≥'} {least}"
     return f"{least} to {most}"
-
-
-def range_shown(low: float, high: float) -> tuple[float, float]:
-    """Both ends of a range to a thousandth of it: 0 for 6e-6 to 1.
-
-    >>> range_shown(6e-6, 0.99998), range_shown(0.4935, 5.0), range_shown(-np.inf, 2.0)
-    ((0.0, 1.0), (0.49, 5.0), (-inf, 2.0))
-    """
-    if not np.isfinite(high - low) or high <= low:
-        return low, high
-    digits = int(2.0 - np.floor(np.log10(high - low)))
-    return round(low, digits), round(high, digits)

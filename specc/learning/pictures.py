@@ -1,14 +1,13 @@
 """The figures of an experiment: how it learnt, how its population fared, and the rules."""
 
 from collections.abc import Iterator
-from typing import Final
 
 from lcs.curves import curve_of
 from lcs.rules.compaction import Compacted
 from specc.figures.learning import draw_learning
 from specc.figures.learning_population import draw_population
 from specc.figures.palettes import PALETTES
-from specc.figures.rules_plane import draw_rules, slice_through
+from specc.figures.rules_plane import DOTS, draw_rules, slice_through
 from specc.figures.rules_sheet import draw_rule_sheet
 from specc.figures.style import Picture, rendered
 from specc.figures.style_names import Style
@@ -16,9 +15,6 @@ from specc.learning.folder import run_name
 from specc.learning.learning import Learnt
 from specc.learning.running import Run, fresh
 from specc.learning.thinning import names_of, seen_by
-
-DOTS: Final = 600
-"""Fresh problems that are drawn over what is decided, at most."""
 
 
 def pictures(learnt: Learnt, style: Style) -> Iterator[tuple[str, bytes]]:

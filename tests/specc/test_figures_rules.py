@@ -6,8 +6,9 @@ from matplotlib.patches import Rectangle
 
 from lcs.inputs import Input
 from lcs.rules.names import plain_names
+from specc.figures.quantities import range_shown
 from specc.figures.rules_plane import Slice, draw_rules, slice_through
-from specc.figures.rules_sheet import BAR, INDENT, MOST, draw_rule_sheet, range_shown
+from specc.figures.rules_sheet import BAR, INDENT, MOST, draw_rule_sheet
 from specc.figures.style import rendered
 from specc.figures.style_names import Style
 from tests.lcs.rules.tables import WALL, drawn_table, table_of, wall_rules
