@@ -17,7 +17,7 @@ from lcs.xcsr import config as xcsr
 from lcs.xcsr.learner import XCSR
 
 
-class Kept(Learner, Saved, Protocol):
+class SavedLearner(Learner, Saved, Protocol):
     """A learner that can be saved, and go on."""
 
 
@@ -28,14 +28,14 @@ class Known:
 
     about: str
     config: Any
-    make: Callable[[Problem, Any, int], Kept]
+    make: Callable[[Problem, Any, int], SavedLearner]
 
 
-def _alcsr(problem: Problem, config: alcsr.Config, seed: int) -> Kept:
+def _alcsr(problem: Problem, config: alcsr.Config, seed: int) -> SavedLearner:
     return ALCSR(problem.classes, problem.inputs, config, seed=seed)
 
 
-def _xcsr(problem: Problem, config: xcsr.Config, seed: int) -> Kept:
+def _xcsr(problem: Problem, config: xcsr.Config, seed: int) -> SavedLearner:
     low, high = ranges_of(problem)
     return XCSR(problem.classes, problem.inputs, config, low=low, high=high, seed=seed)
 
@@ -57,6 +57,6 @@ LEARNERS: Final[Mapping[str, Known]] = {
 """In the order in which they are listed."""
 
 
-def learner_for(problem: Problem, name: str, config: Any, seed: int) -> Kept:
+def learner_for(problem: Problem, name: str, config: Any, seed: int) -> SavedLearner:
     """A learner that knows nothing yet, with as many inputs and actions as the problem."""
     return LEARNERS[name].make(problem, config, seed)

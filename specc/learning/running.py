@@ -17,7 +17,7 @@ from lcs.course import Course
 from lcs.problems.problem import Problem
 from specc.learning.courses import joined, last_tests
 from specc.learning.experiment import Experiment
-from specc.learning.learners import Kept, learner_for
+from specc.learning.learners import SavedLearner, learner_for
 
 BLOCK: Final = 1_000
 """Problems that are drawn at once; another number gives other problems."""
@@ -47,7 +47,7 @@ class Run:
     """
 
     seed: int
-    learner: Kept
+    learner: SavedLearner
     courses: list[Course] = field(default_factory=list)
     rights: list[Integers] = field(default_factory=list)
     done: int = 0
