@@ -47,8 +47,3 @@ def just_below(bound: float) -> float | None:
     """The number that `bound` stands right above, if that has fewer digits; else None."""
     below = math.nextafter(bound, -math.inf)
     return below if len(repr(below)) + 4 < len(repr(bound)) else None
-
-
-def rounded(value: float, digits: int) -> float:
-    """A number with so many significant digits."""
-    return float(f"{value:.{digits}g}")

@@ -14,7 +14,7 @@ from lcs.rules.names import Names
 from lcs.rules.parts import rules_of
 from lcs.rules.readable import readable
 from lcs.rules.table import RuleTable
-from lcs.rules.words import Sentence, number, sentence
+from lcs.rules.words import Sentence, reward_text, sentence
 
 SPOKEN: Final = 3
 """Voters of which a reason says all; the others are counted."""
@@ -59,7 +59,7 @@ class Reason:
         if self.following is None:
             return text
         other, reward = self.following
-        return f"{text}; next: {other} ({_reward(reward)} expected, not {_reward(self.expected)})"
+        return f"{text}; next: {other} ({reward_text(reward)} expected, not {reward_text(self.expected)})"
 
 
 def reason_for(table: RuleTable, x: npt.ArrayLike, names: Names) -> Reason:
@@ -114,10 +114,6 @@ def _said(voter: Voter) -> str:
     least = f", 95 % confidence: in {math.floor(1000.0 * sure.low) / 10.0:g} % or more"
     known = f"{said.evidence}{least if sure.cases > 1 else ''}"
     return f"{_percent(voter.share)} {said.when}: {said.then} ({known})"
-
-
-def _reward(value: float) -> str:
-    return number(float(f"{value:.4g}"))
 
 
 def _percent(share: float) -> str:

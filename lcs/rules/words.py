@@ -98,6 +98,11 @@ def number(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
+def reward_text(value: float) -> str:
+    """A reward to four significant digits."""
+    return number(float(f"{value:.4g}"))
+
+
 def allowed_values(each: Input, lower: float, upper: float, high: float) -> list[str]:
     """Which values of a discrete input a condition on their indices allows."""
     return [
@@ -134,7 +139,7 @@ def outcome(table: RuleTable, rule: int, names: Names, levels: Array) -> str:
     """
     action = names.actions[int(table.action[rule])]
     if len(levels) > 2:
-        return f"{action} earns {number(float(f'{table.prediction[rule]:.4g}'))}"
+        return f"{action} earns {reward_text(float(table.prediction[rule]))}"
     return action if table.prediction[rule] == levels[-1] else f"not {action}"
 
 
