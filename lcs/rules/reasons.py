@@ -59,7 +59,8 @@ class Reason:
         if self.following is None:
             return text
         other, reward = self.following
-        return f"{text}; next: {other} ({reward_text(reward)} expected, not {reward_text(self.expected)})"
+        expected, ours = reward_text(reward), reward_text(self.expected)
+        return f"{text}; next: {other} ({expected} expected, not {ours})"
 
 
 def reason_for(table: RuleTable, x: npt.ArrayLike, names: Names) -> Reason:
