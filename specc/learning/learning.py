@@ -7,22 +7,27 @@ from typing import Any, final
 
 from lcs.problems.problem import Problem
 from lcs.rules.compaction import Compacted
+from lcs.rules.experience import Experience
 from specc.learning import folder as folders
 from specc.learning.experiment import Experiment
 from specc.learning.resuming import keep, taken_up
 from specc.learning.running import Run, begun, go_on, standing
 from specc.learning.summary import Summary, summed_up
-from specc.learning.thinning import figures_of, thinned
+from specc.learning.thinning import figures_of, seen_by, thinned
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Learnt:
-    """What came of an experiment: its runs in the order of seeds, few rules of each, figures."""
+    """What came of an experiment: its runs in the order of seeds; of each, what follows from it.
+
+    seen: the last examples that a run learnt from. compacted: few rules that say the same on them.
+    """
 
     experiment: Experiment
     problem: Problem
     runs: tuple[Run, ...]
+    seen: tuple[Experience, ...]
     compacted: tuple[Compacted, ...]
     summaries: tuple[Summary, ...]
 
@@ -90,15 +95,16 @@ def concluded(
     tell: Callable[[str, int, int], None],
 ) -> Learnt:
     """What came of runs that are done."""
+    seen = tuple(seen_by(run, problem) for run in runs)
     compacted, summaries = [], []
     for i, run in enumerate(runs):
         tell("compacting rules", 2 * i, 2 * len(runs))
-        few = thinned(run, problem)
+        few = thinned(run, problem, seen[i])
         tell("testing", 2 * i + 1, 2 * len(runs))
         figures = figures_of(few.table, run, problem, experiment.tests)
         compacted.append(few)
         summaries.append(summed_up(run, problem, experiment.tests, figures))
-    return Learnt(experiment, problem, runs, tuple(compacted), tuple(summaries))
+    return Learnt(experiment, problem, runs, seen, tuple(compacted), tuple(summaries))
 
 
 def _taken_up_or_begun(

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from lcs.arrays import Array
 from lcs.curves import curve_of
 from lcs.rules.compaction import Compacted
 from specc.figures.learning import draw_learning
@@ -14,7 +15,7 @@ from specc.figures.style_names import Style
 from specc.learning.folder import run_name
 from specc.learning.learning import Learnt
 from specc.learning.running import Run, fresh
-from specc.learning.thinning import names_of, seen_by
+from specc.learning.thinning import names_of
 
 
 def pictures(learnt: Learnt, style: Style) -> Iterator[tuple[str, bytes]]:
@@ -36,20 +37,19 @@ def _drawn(learnt: Learnt, style: Style) -> Iterator[tuple[str, Picture]]:
         yield "learning.svg", draw_learning(curves, title, about=about, style=style)
     population = [course for course, _ in courses]
     yield "population.svg", draw_population(population, title, about=about, style=style)
-    for run, compacted in zip(learnt.runs, learnt.compacted, strict=True):
+    for run, seen, compacted in zip(learnt.runs, learnt.seen, learnt.compacted, strict=True):
         if len(compacted.table):
-            yield from _of_rules(learnt, run, compacted, style)
+            yield from _of_rules(learnt, run, seen.inputs, compacted, style)
 
 
 def _of_rules(
-    learnt: Learnt, run: Run, compacted: Compacted, style: Style
+    learnt: Learnt, run: Run, inputs: Array, compacted: Compacted, style: Style
 ) -> Iterator[tuple[str, Picture]]:
     """The rules of a run: as a sheet, and where there are two inputs, as areas."""
     problem, table, names = learnt.problem, compacted.table, names_of(learnt.problem)
     folder, title = run_name(run.seed), f"{problem.name}, rules"
     became = f"{compacted.rules_before:,} rules became {len(table):,} by compaction"
     about = [f"{_about(learnt)[:-1]}, seed {run.seed}: {became}."]
-    inputs = seen_by(run, problem).inputs
     sheet = draw_rule_sheet(table, names, title, about=about, examples=inputs, style=style)
     yield f"{folder}/rules.svg", sheet
     if problem.inputs == 2:

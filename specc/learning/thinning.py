@@ -17,16 +17,16 @@ REMEMBERED: Final = 10_000
 """Cycles, the last ones: what compaction goes by."""
 
 
-def thinned(run: Run, problem: Problem) -> Compacted:
-    """Few rules that say what all rules of a run say, on the last examples that it learnt from.
-
-    Of each only the reward of the action that was tried is known, as to the learner itself.
-    """
-    return compact(run.learner.rules(), seen_by(run, problem), noise=_noise(problem))
+def thinned(run: Run, problem: Problem, seen: Experience) -> Compacted:
+    """Few rules that say what all rules of a run say, on what it has `seen`."""
+    return compact(run.learner.rules(), seen, noise=_noise(problem))
 
 
 def seen_by(run: Run, problem: Problem) -> Experience:
-    """The last examples that a run learnt from: inputs, and rewards of what was tried."""
+    """The last examples that a run learnt from.
+
+    Of each only the reward of the action that was tried is known, as to the learner itself.
+    """
     course, _ = run.so_far()
     first = max(0, run.done - REMEMBERED) // BLOCK
     drawn = [block(problem, run.seed, number) for number in range(first, -(-run.done // BLOCK))]

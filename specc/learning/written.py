@@ -21,7 +21,7 @@ from specc.learning.folder import run_folder
 from specc.learning.learning import Learnt
 from specc.learning.pictures import count_of, pictures
 from specc.learning.running import WINDOW, Run
-from specc.learning.thinning import names_of, seen_by
+from specc.learning.thinning import names_of
 from specc.texts.learning import learning_record, learning_text
 
 COLUMNS: Final = (
@@ -64,11 +64,10 @@ def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, b
         yield inside / "learner.npz", as_bytes(run.learner.state())
         yield inside / "curve.csv", _csv(run)
         yield inside / "course.npz", _npz(run)
-    for run, compacted in zip(learnt.runs, learnt.compacted, strict=True):
-        inside, names = run_folder(folder, run.seed), names_of(learnt.problem)
-        few = compacted.table
-        seen = seen_by(run, learnt.problem).inputs
-        text = "".join(f"{each}\n" for each in in_words(few, names, seen))
+    names = names_of(learnt.problem)
+    for run, seen, compacted in zip(learnt.runs, learnt.seen, learnt.compacted, strict=True):
+        inside, few = run_folder(folder, run.seed), compacted.table
+        text = "".join(f"{each}\n" for each in in_words(few, names, seen.inputs))
         yield inside / "rules.txt", text.encode()
         yield inside / "rules.csv", as_csv(few, names).encode()
         yield inside / "rules.json", json_bytes(as_record(few, names))

@@ -9,7 +9,7 @@ from lcs.rules.words import in_words
 from specc.learning.experiment import record_of
 from specc.learning.learning import Learnt
 from specc.learning.summary import Summary
-from specc.learning.thinning import names_of, seen_by
+from specc.learning.thinning import names_of
 from verifier.report.layout import INDENT, bullets, section, table
 
 MOST_RULES: Final = 16
@@ -31,8 +31,8 @@ def _rules_text(learnt: Learnt) -> list[str]:
     choosing = few.prediction == few.prediction.max(initial=-np.inf)
     if not 0 < choosing.sum() <= MOST_RULES:
         return []
-    inputs = seen_by(learnt.runs[0], learnt.problem).inputs
-    said = [str(each) for each in in_words(few, names, inputs) if choosing[each.rule]]
+    sentences = in_words(few, names, learnt.seen[0].inputs)
+    said = [str(each) for each in sentences if choosing[each.rule]]
     return [
         section(
             f"rules that choose an action, after compaction (seed {learnt.runs[0].seed})",
