@@ -9,6 +9,7 @@ import numpy as np
 from lcs.alcsr import config as alcsr
 from lcs.alcsr.config import GROWN
 from lcs.alcsr.learner import ALCSR
+from lcs.alcsr.readings import RangeIs
 from lcs.arrays import Array
 from lcs.course import Learner
 from lcs.problems.problem import Problem
@@ -32,7 +33,10 @@ class Known:
 
 
 def _alcsr(problem: Problem, config: alcsr.Config, seed: int) -> SavedLearner:
-    return ALCSR(problem.classes, problem.inputs, config, seed=seed)
+    if config.readings.range_is is not RangeIs.DECLARED:
+        return ALCSR(problem.classes, problem.inputs, config, seed=seed)
+    low, high = ranges_of(problem)
+    return ALCSR(problem.classes, problem.inputs, config, low=low, high=high, seed=seed)
 
 
 def _xcsr(problem: Problem, config: xcsr.Config, seed: int) -> SavedLearner:

@@ -120,14 +120,15 @@ def test_constants_and_what_the_problem_is_made_with_can_be_set(
 ) -> None:
     asked = ["learn", "multiplexer_6", *QUICK, "--learner", "thesis", "--format", "json"]
     asked += ["--with", "thresholds=0.25,0.75", "--with", "flipped=0.1", "--explore", "0.5"]
-    assert (
-        main([*asked, "--set", "mutation_is=always", "--set", "readings.corpse_rate=shrunk"]) == 0
-    )
+    for setting in ("mutation_is=always", "readings.corpse_rate=shrunk", "range_is=declared"):
+        asked += ["--set", setting]
+    assert main(asked) == 0
     found = result(capsys)
 
     assert found["experiment"]["settings"] == {
         "mutation_is": "always",
         "readings.corpse_rate": "shrunk",
+        "range_is": "declared",
         "explore": "0.5",
     }
     # Where an action is unknown a cycle learns, so tests are half of all at most, but for chance.
