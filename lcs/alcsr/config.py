@@ -1,6 +1,7 @@
 """The constants of ALCSR by the thesis's names, and how its open places are read."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, fields
 from typing import Final, final
 
 from lcs.alcsr.readings import (
@@ -96,6 +97,13 @@ class Beyond:
             )
 
 
+CHANCES: Final = frozenset(
+    {"explore", "immature_vote", "breeding_share", "generalize", "mutate", "mutation", "transfer"}
+    | {"learning_rate"}
+)
+"""The constants that are chances or shares."""
+
+
 @final
 @dataclass(frozen=True, slots=True)
 class Config:
@@ -140,6 +148,21 @@ class Config:
     learning_rate: float = 0.2
     readings: Readings = field(default_factory=Readings)
     beyond: Beyond = field(default_factory=Beyond)
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that can't be what they are called.
+
+        Raises:
+            LearnerError: a chance or share is not from 0 to 1, or another number is negative.
+        """
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if not isinstance(value, (int, float)):
+                continue
+            if each.name in CHANCES and not 0.0 <= value <= 1.0:
+                raise LearnerError(f"{each.name} is from 0 to 1, and {value} is not")
+            if not 0.0 <= value < math.inf:
+                raise LearnerError(f"{each.name} is a number of 0 or more, and {value} is not")
 
 
 GROWN: Final = Config(

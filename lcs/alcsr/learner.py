@@ -63,7 +63,7 @@ class ALCSR:
         seed: of all its chance.
 
     Raises:
-        LearnerError: that reading has no range, or a range is none.
+        LearnerError: that reading has no range, a range is none, or there is no action or input.
     """
 
     def __init__(
@@ -77,6 +77,8 @@ class ALCSR:
         high: npt.ArrayLike = -np.inf,
         seed: int = 0,
     ) -> None:
+        if actions < 1 or inputs < 1:
+            raise LearnerError(f"a learner needs actions and inputs: {actions} and {inputs} given")
         self.config = config or Config()
         self.population: Population = empty(actions, inputs, self.config, reward_range)
         self.population.land.low[:] = low

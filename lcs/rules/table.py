@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 from typing import final
 
-from lcs.arrays import Array, Integers
+import numpy as np
+
+from lcs.arrays import Array, Booleans, Integers
 
 
 @final
@@ -27,6 +29,16 @@ class RuleTable:
     wrong: Integers
     low: Array
     high: Array
+
+    def at_ends(self, x: Array) -> tuple[Array, Booleans]:
+        """Inputs (T, n) with what lies beyond the known range taken at its end; and which did (T,).
+
+        A bound at the end of the range is no condition, so a rule that reaches it holds there too.
+        """
+        if not len(self):
+            return x, np.zeros(len(x), np.bool_)
+        inside: Array = np.clip(x, self.low, self.high)
+        return inside, np.asarray((inside != x).any(axis=1))
 
     def __len__(self) -> int:
         """How many rules."""

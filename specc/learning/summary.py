@@ -31,6 +31,7 @@ class Summary:
 
     cycles; tried: those of them that learnt. accuracy: the share of `fresh` new problems that are
     decided right, where one that no rule knows counts as wrong. uncovered: the share of these.
+    beyond: the share of those outside of the known range, which are taken at its end.
     performance, error: of the last tests, `tests` of them (1,000 at most): the share that was
     right, and the mean system error; None where nothing was tested. right_of_last: how many of the
     last 10,000 tests were right; None where there were fewer. rules: at the end. most_rules, at:
@@ -42,6 +43,7 @@ class Summary:
     tried: int
     accuracy: float
     uncovered: float
+    beyond: float
     fresh: int
     performance: float | None
     error: float | None
@@ -65,6 +67,7 @@ def summed_up(run: Run, problem: Problem, count: int, thinned: Thinned) -> Summa
     """The figures of a run, tested on so many fresh problems."""
     course, right = run.so_far()
     x, classes = fresh(problem, run.seed, count)
+    x, is_beyond = run.learner.rules().at_ends(x)
     actions, _ = run.learner.decide(x)
     is_tried = ~course.is_test
     peak = int(np.argmax(course.rules))
@@ -77,6 +80,7 @@ def summed_up(run: Run, problem: Problem, count: int, thinned: Thinned) -> Summa
         tried=int(is_tried.sum()),
         accuracy=float(np.mean(actions == classes)),
         uncovered=float(np.mean(actions < 0)),
+        beyond=float(np.mean(is_beyond)),
         fresh=len(x),
         performance=_mean(tests),
         error=float(errors.mean()) if len(errors) else None,

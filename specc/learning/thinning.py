@@ -41,6 +41,7 @@ def seen_by(run: Run, problem: Problem) -> Experience:
 def figures_of(small: RuleTable, run: Run, problem: Problem, count: int) -> Thinned:
     """How few they are, and how right on fresh problems; uncovered ones count as wrong."""
     x, classes = fresh(problem, run.seed, count)
+    x, _ = small.at_ends(x)
     return Thinned(len(small), float(np.mean(decide(small, x).best == classes)))
 
 

@@ -15,6 +15,9 @@ from verifier.report.layout import INDENT, bullets, section, table
 MOST_RULES: Final = 16
 """So many are printed; more are in files."""
 
+NOTABLE: Final = 0.005
+"""The share of problems beyond what was learnt from that is worth a word."""
+
 
 def learning_text(learnt: Learnt) -> str:
     """What was learnt in each run, and what the figures mean."""
@@ -54,9 +57,14 @@ def _run_text(one: Summary) -> str:
 
 
 def _unknown(one: Summary) -> str:
-    if not one.uncovered:
-        return ""
-    return f"; {_percent(one.uncovered)} count as wrong, since an action has no rule there"
+    told = ""
+    if one.uncovered:
+        told += f"; {_percent(one.uncovered)} count as wrong, since an action has no rule there"
+    if one.beyond >= NOTABLE:
+        told += (
+            f"; {_percent(one.beyond)} lie beyond what was learnt from, taken at its end"
+        )
+    return told
 
 
 def _performance(one: Summary) -> str:

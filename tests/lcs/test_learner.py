@@ -151,3 +151,12 @@ def test_a_range_that_is_declared_has_to_be_given_and_stays() -> None:
     assert learner.rules().high.tolist() == [1.0, 1.0]
     fresh, _, right = checkerboard(2).drawn(3_000, np.random.default_rng(2))
     assert np.mean(learner.decide(fresh)[0] == right) > 0.8
+
+
+def test_constants_that_can_be_none_are_refused() -> None:
+    with pytest.raises(LearnerError, match="explore is from 0 to 1"):
+        Config(explore=2.0)
+    with pytest.raises(LearnerError, match="sprout_width is a number of 0 or more"):
+        Config(sprout_width=-1.0)
+    with pytest.raises(LearnerError, match="0 and 2 given"):
+        ALCSR(0, 2)
