@@ -47,12 +47,14 @@ def experiment_of(record: Mapping[str, Any]) -> Experiment:
     """The experiment of a record.
 
     Raises:
-        KeyError, TypeError, ValueError: it is no record of this version.
+        AttributeError, KeyError, TypeError, ValueError: it is no record of this version.
     """
     values = dict(record)
     if values.pop("version") != VERSION:
         raise ValueError("it is of another version")
-    return Experiment(**{**values, "seeds": tuple(int(seed) for seed in values["seeds"])})
+    found = Experiment(**{**values, "seeds": tuple(values["seeds"])})
+    _refuse_unfit(found)
+    return found
 
 
 def problem_of(experiment: Experiment) -> Problem:
@@ -102,6 +104,23 @@ def offer_of(name: str) -> Offer:
     remedy = did_you_mean(name, list(PROBLEMS))
     remedy = remedy or "`specc learn --list` lists them; a table is named by its file, rows.csv"
     raise fault("V401", name, f"no problem is named '{name}'", remedy)
+
+
+def _refuse_unfit(read: Experiment) -> None:
+    """A record is a file that somebody may have edited."""
+    for name, least in (("cycles", 1), ("tests", 1), ("seeds", 0)):
+        given = getattr(read, name)
+        for each in given if name == "seeds" else [given]:
+            if type(each) is not int or each < least:
+                raise ValueError(f"'{name}' has {each!r}: whole numbers from {least} on fit")
+    if not read.seeds:
+        raise ValueError("'seeds' is empty")
+    written = [*read.given.items(), *read.settings.items(), (read.problem, read.learner)]
+    for each in (word for words in written for word in words):
+        if not isinstance(each, str):
+            raise TypeError(f"{each!r} is no text")
+    if read.learner not in LEARNERS:
+        raise ValueError(f"no learner is named '{read.learner}'")
 
 
 def _values(offer: Offer, given: Mapping[str, str], named: str) -> dict[str, Value]:

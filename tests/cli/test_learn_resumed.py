@@ -192,6 +192,31 @@ def test_what_is_damaged_is_told_and_not_a_traceback(
     assert "help" in told
 
 
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        ({"learner": "xcs"}, "no learner is named 'xcs'"),
+        ({"cycles": "many"}, "'cycles' has 'many'"),
+        ({"tests": None}, "'tests' has None"),
+        ({"seeds": [0.5]}, "'seeds' has 0.5"),
+        ({"seeds": []}, "'seeds' is empty"),
+        ({"given": []}, "this is no experiment"),
+        ({"settings": {"explore": 0.5}}, "0.5 is no text"),
+        ({"problem": 3}, "3 is no text"),
+    ],
+)
+def test_a_record_that_does_not_fit_is_told_with_what_does_not(
+    edit: dict[str, object], said: str, kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = json.loads((kept / "experiment.json").read_text())
+    Path("experiment.json").write_text(json.dumps(record | edit))
+
+    assert main(["learn", "--resume", "-o", "."]) == 2
+    told = capsys.readouterr().err
+    assert "experiment.json: error[V404]: " in told
+    assert said in told
+
+
 def test_a_checkpoint_with_a_bit_changed_anywhere_is_refused_or_the_same(kept: Path) -> None:
     content = (kept / "seed_0" / "checkpoint.npz").read_bytes()
     same, path = (
