@@ -16,17 +16,32 @@ from specc.learning.experiment import Experiment, experiment_of, record_of
 
 EXPERIMENT: Final = "experiment.json"
 CHECKPOINT: Final = "checkpoint.npz"
+SUMMARY: Final = "summary.txt"
+RECORD: Final = "summary.json"
+CURVES: Final = "learning.svg"
+POPULATION: Final = "population.svg"
+
+NAMES: Final = (SUMMARY, RECORD, CURVES, POPULATION)
+"""What an experiment writes beside its own file and the folders of its runs."""
 
 
 def begin_in(folder: Path, experiment: Experiment) -> None:
     """Write what is run, where nothing else is.
 
     Raises:
-        SpecError: the folder holds an experiment (V403), or can't be written (V347).
+        SpecError: the folder holds an experiment (V403), is none or holds something that an
+            experiment would write over (V405), or can't be written (V347).
     """
+    _refuse_file(folder)
     if (folder / EXPERIMENT).exists():
         remedy = f"`specc learn --resume -o {folder}` goes on with it; or name another folder"
         raise fault("V403", folder, "this folder holds an experiment already", remedy)
+    taken = [folder / name for name in NAMES]
+    taken += [run_folder(folder, seed) for seed in experiment.seeds]
+    for path in taken:
+        if path.exists() or path.is_symlink():
+            message = "this is of no experiment that is kept here, and would be written over"
+            raise fault("V405", path, message, "name another folder; or move this away")
     write_experiment(folder, experiment)
 
 
@@ -43,9 +58,11 @@ def experiment_in(folder: Path) -> Experiment:
     """What is run there.
 
     Raises:
-        SpecError: the folder holds no experiment (V403), or none that can be read (V404).
+        SpecError: the folder holds no experiment (V403), or none that can be read (V404), or is
+            no folder (V405).
         OSError: it can't be read.
     """
+    _refuse_file(folder)
     path = folder / EXPERIMENT
     if not path.exists():
         remedy = "name the folder that -o named; or leave --resume out"
@@ -57,6 +74,11 @@ def experiment_in(folder: Path) -> Experiment:
         raise fault(
             "V404", path, f"this is no experiment of this specc: {error}", remedy
         ) from error
+
+
+def _refuse_file(folder: Path) -> None:
+    if folder.exists() and not folder.is_dir():
+        raise fault("V405", folder, "this is a file, no folder", "name a folder, or a new one")
 
 
 def continued(folder: Path, kept: Experiment, cycles: int | None) -> Experiment:

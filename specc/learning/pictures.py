@@ -12,7 +12,7 @@ from specc.figures.rules_plane import DOTS, draw_rules, slice_through
 from specc.figures.rules_sheet import draw_rule_sheet
 from specc.figures.style import Picture, rendered
 from specc.figures.style_names import Style
-from specc.learning.folder import run_name
+from specc.learning.folder import CURVES, POPULATION, run_name
 from specc.learning.learning import Learnt
 from specc.learning.running import Run, fresh
 from specc.learning.thinning import names_of
@@ -34,9 +34,9 @@ def _drawn(learnt: Learnt, style: Style) -> Iterator[tuple[str, Picture]]:
     courses = [run.so_far() for run in learnt.runs]
     curves = [curve_of(*each) for each in courses]
     if all(len(curve.tries) for curve in curves):
-        yield "learning.svg", draw_learning(curves, title, about=about, style=style)
+        yield CURVES, draw_learning(curves, title, about=about, style=style)
     population = [course for course, _ in courses]
-    yield "population.svg", draw_population(population, title, about=about, style=style)
+    yield POPULATION, draw_population(population, title, about=about, style=style)
     for run, seen, compacted in zip(learnt.runs, learnt.seen, learnt.compacted, strict=True):
         if len(compacted.table):
             yield from _of_rules(learnt, run, seen.inputs, compacted, style)

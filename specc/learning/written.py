@@ -17,7 +17,7 @@ from lcs.rules.words import in_words
 from lcs.saving import as_bytes
 from specc.figures.style_names import Style
 from specc.files import json_bytes, write_atomically
-from specc.learning.folder import run_folder
+from specc.learning.folder import RECORD, SUMMARY, run_folder
 from specc.learning.learning import Learnt
 from specc.learning.pictures import count_of, pictures
 from specc.learning.running import WINDOW, Run
@@ -57,8 +57,8 @@ def write_all(
 
 def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, bytes]]:
     """Each file and what it holds, the summary first: who interrupts the figures keeps it."""
-    yield folder / "summary.txt", f"{learning_text(learnt)}\n".encode()
-    yield folder / "summary.json", json_bytes(learning_record(learnt))
+    yield folder / SUMMARY, f"{learning_text(learnt)}\n".encode()
+    yield folder / RECORD, json_bytes(learning_record(learnt))
     for run in learnt.runs:
         inside = run_folder(folder, run.seed)
         yield inside / "learner.npz", as_bytes(run.learner.state())

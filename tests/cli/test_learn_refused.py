@@ -1,0 +1,52 @@
+"""What `specc learn` refuses, so that no file of a user's is lost and no figure misleads."""
+
+from pathlib import Path
+
+import pytest
+
+from specc.cli import main
+from specc.learning.experiment import Experiment
+from specc.learning.folder import NAMES, begin_in
+
+BOARD = ["learn", "checkerboard_3x3", "--cycles", "300", "--tests", "50"]
+ROWS = "near,far,does\n" + "0.1,0.2,go\n0.9,0.3,stop\n0.2,0.8,go\n0.7,0.9,stop\n" * 8
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("name", [*NAMES, "seed_0/rules.txt", "seed_0/checkpoint.npz"])
+def test_a_file_that_an_experiment_would_write_over_is_left_alone(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = Path("out") / name
+    own.parent.mkdir(parents=True)
+    own.write_text("mine")
+
+    assert main([*BOARD, "-o", "out"]) == 2
+    told = capsys.readouterr().err
+    assert f"out/{name.partition('/')[0]}: error[V405]" in told
+    assert own.read_text() == "mine"
+    assert [path for path in Path("out").rglob("*") if path.is_file()] == [own]
+
+
+def test_a_folder_with_other_files_can_be_begun_in() -> None:
+    Path("out").mkdir()
+    Path("out/notes.txt").write_text("mine")
+
+    begin_in(Path("out"), Experiment("checkerboard_3x3", {}, "alcsr", {}, 300, (0,), 50))
+
+    assert Path("out/experiment.json").exists()
+
+
+@pytest.mark.parametrize("asked", [BOARD, ["learn", "--resume"]])
+def test_a_file_in_the_place_of_the_folder_is_told(
+    asked: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("out").write_text("mine")
+
+    assert main([*asked, "-o", "out"]) == 2
+    assert "out: error[V405]: this is a file, no folder" in capsys.readouterr().err
+    assert Path("out").read_text() == "mine"
