@@ -187,6 +187,7 @@ def _resumed(
 ) -> "Experiment":
     """What is kept in the folder, maybe with more cycles."""
     from specc.learning.folder import continued, experiment_in
+    from specc.learning.unchanged import refuse_changed
 
     if output is None:
         raise typer.BadParameter("name the folder that --resume goes on with: -o FOLDER")
@@ -196,6 +197,7 @@ def _resumed(
             f"--resume goes on with the {kept.problem} that {output} keeps, as it was begun: only "
             "--cycles can be said anew"
         )
+    refuse_changed(kept)
     return continued(output, kept, cycles)
 
 
@@ -205,9 +207,12 @@ def _run(
     from specc.learning.experiment import config_of, problem_of
     from specc.learning.folder import begin_in
     from specc.learning.learning import Stopped, concluded, learnt_from
+    from specc.learning.unchanged import with_digest
 
     made = problem_of(experiment)
     config = config_of(experiment, made)
+    if is_new:
+        experiment = with_digest(experiment)
     if output is not None and is_new:
         begin_in(output, experiment)
     warmed_learner(experiment.learner)

@@ -27,6 +27,7 @@ class Experiment:
     problem: a name of `PROBLEMS`, or a CSV file. given: what it is made with, as it was written.
     learner: a name of `LEARNERS`. settings: of its constants, as they were written.
     cycles: of each run, tests included. seeds: one run from each. tests: fresh problems at the end.
+    digest: of the table's file, SHA-256; "" where there is none.
     """
 
     problem: str
@@ -36,6 +37,7 @@ class Experiment:
     cycles: int
     seeds: tuple[int, ...]
     tests: int
+    digest: str = ""
 
 
 def record_of(experiment: Experiment) -> dict[str, Any]:
@@ -99,7 +101,9 @@ def offer_of(name: str) -> Offer:
     """
     if name in PROBLEMS:
         return PROBLEMS[name]
-    if Path(name).suffix.lower() == TABLE:
+    if Path(name).is_dir():
+        raise fault("V401", name, "this is a folder", "name a table in it: a .csv file")
+    if is_table(name):
         return table_offer(Path(name))
     remedy = did_you_mean(name, list(PROBLEMS))
     remedy = remedy or "`specc learn --list` lists them; a table is named by its file, rows.csv"
@@ -121,6 +125,11 @@ def _refuse_unfit(read: Experiment) -> None:
             raise TypeError(f"{each!r} is no text")
     if read.learner not in LEARNERS:
         raise ValueError(f"no learner is named '{read.learner}'")
+
+
+def is_table(problem: str) -> bool:
+    """Whether a problem is the table of a file."""
+    return problem not in PROBLEMS and Path(problem).suffix.lower() == TABLE
 
 
 def _values(offer: Offer, given: Mapping[str, str], named: str) -> dict[str, Value]:

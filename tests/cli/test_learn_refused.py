@@ -1,5 +1,6 @@
 """What `specc learn` refuses, so that no file of a user's is lost and no figure misleads."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -50,3 +51,31 @@ def test_a_file_in_the_place_of_the_folder_is_told(
     assert main([*asked, "-o", "out"]) == 2
     assert "out: error[V405]: this is a file, no folder" in capsys.readouterr().err
     assert Path("out").read_text() == "mine"
+
+
+def test_a_folder_in_the_place_of_the_problem_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("tables.csv").mkdir()
+
+    for name in ("tables.csv", "."):
+        assert main(["learn", name]) == 2
+        assert f"{name}: error[V401]: this is a folder" in capsys.readouterr().err
+
+
+def test_an_experiment_goes_on_with_its_table_and_with_no_other(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    table = Path("rows.csv")
+    table.write_text(ROWS)
+    assert main(["learn", "rows.csv", "--cycles", "200", "-o", "out"]) == 0
+    summary = json.loads(Path("out/summary.json").read_text())
+    assert summary["experiment"] == json.loads(Path("out/experiment.json").read_text())
+    table.write_text(ROWS.replace("0.9", "0.8"))
+    before = Path("out/experiment.json").read_bytes()
+    capsys.readouterr()
+
+    assert main(["learn", "--resume", "--cycles", "300", "-o", "out"]) == 2
+    assert "rows.csv: error[V406]: the table has changed" in capsys.readouterr().err
+    assert Path("out/experiment.json").read_bytes() == before
+
+    table.write_text(ROWS)
+    assert main(["learn", "--resume", "--cycles", "300", "-o", "out"]) == 0
