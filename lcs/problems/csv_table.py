@@ -38,6 +38,11 @@ def read_table(path: Path, target: str | None = None, without: Sequence[str] = (
     for name in (target, *without):
         if name not in names:
             raise LearnerError(f"no column is named '{name}': there are {', '.join(names)}")
+    if target in without:
+        raise LearnerError(
+            f"'{target}' is the class (target), so it can't be left out (without): name another "
+            "column in one of both"
+        )
     columns = {name: [row[i] for row in rows] for i, name in enumerate(names)}
     labels, right = _classes(target, columns[target], lines)
     used = [name for name in names if name not in {target, *without}]

@@ -63,10 +63,12 @@ def in_folds(table: Table, folds: int, tested: int) -> Table:
     Raises:
         LearnerError: there are not so many parts, or not so many rows.
     """
-    if not (2 <= folds <= len(table.x) and 1 <= tested <= folds):
+    rows = len(table.x)
+    if not 2 <= folds <= rows:
+        raise LearnerError(f"folds = {folds}: write 2 parts to {rows} (a row in each)")
+    if not 1 <= tested <= folds:
         raise LearnerError(
-            f"part {tested} of {folds} can't be tested on: write 2 parts at least, "
-            f"{len(table.x)} (as many as rows) at most, and one of them"
+            f"tested = {tested}: there are {folds} parts (folds), so tested is 1 to {folds}"
         )
     parts = np.array_split(np.arange(len(table.x)), folds)
     learnt = np.concatenate([part for k, part in enumerate(parts, 1) if k != tested])

@@ -3,7 +3,7 @@
 import errno
 import sys
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 from typer.exceptions import TyperException
@@ -41,6 +41,17 @@ app = typer.Typer(
     rich_markup_mode="markdown",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+NUMBERS: Final = {
+    "Input should be a valid integer": "write a whole number, in digits alone, such as 1000",
+    "Input should be a valid number": "write a number, such as 0.5",
+    "Input should be a finite number": "write a number, such as 0.5",
+    "Input should be greater than or equal to ": "the least is ",
+    "Input should be less than or equal to ": "the most is ",
+    "Input should be greater than ": "write more than ",
+    "Input should be less than ": "write less than ",
+}
+"""What the parser says of a number, and what specc says."""
 
 
 def _version(wanted: bool) -> None:  # noqa: FBT001  typer calls it with the flag's value
@@ -121,7 +132,7 @@ def _see(arguments: Sequence[str]) -> str:
 
 def _usage(error: TyperException) -> str:
     """What is wrong with the arguments, and with which."""
-    words = str(error).removeprefix("Value error, ")
+    words = _in_our_words(str(error).removeprefix("Value error, "))
     if words.startswith("No such option"):
         meant = did_you_mean(getattr(error, "option_name", ""), _options(error))
         return f"{words}; {meant}" if meant else words
@@ -130,6 +141,14 @@ def _usage(error: TyperException) -> str:
         return f"{wanted} is missing" if wanted else words
     option = next(iter(getattr(getattr(error, "param", None), "opts", ())), "")
     return f"{option}: {words}" if option.startswith("-") and option not in words else words
+
+
+def _in_our_words(words: str) -> str:
+    """What the parser says of a number, as what to write instead."""
+    for theirs, ours in NUMBERS.items():
+        if words.startswith(theirs):
+            return ours + words.removeprefix(theirs).partition(",")[0]
+    return words
 
 
 def _options(error: TyperException) -> list[str]:

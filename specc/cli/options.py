@@ -100,7 +100,7 @@ def assignments(settings: list[str]) -> dict[str, str]:
         name, equals, value = setting.partition("=")
         name = name.strip()
         if not equals or not name or not value.strip():
-            raise typer.BadParameter(f"write NAME=VALUE, for example mu=1.5 (got '{setting}')")
+            raise typer.BadParameter(f"write {name or 'NAME'}=VALUE (got '{setting}')")
         if name in found:
             raise typer.BadParameter(f"'{name}' is set twice")
         found[name] = value.strip()

@@ -12,6 +12,7 @@ from lcs.alcsr.learner import ALCSR
 from lcs.alcsr.readings import RangeIs
 from lcs.arrays import Array
 from lcs.course import Learner
+from lcs.faults import LearnerError
 from lcs.problems.problem import Problem
 from lcs.state import Saved
 from lcs.xcsr import config as xcsr
@@ -36,6 +37,11 @@ def _alcsr(problem: Problem, config: alcsr.Config, seed: int) -> SavedLearner:
     if config.readings.range_is is not RangeIs.DECLARED:
         return ALCSR(problem.classes, problem.inputs, config, seed=seed)
     low, high = ranges_of(problem)
+    for each, least, most in zip(problem.described, low, high, strict=True):
+        if least == most:
+            raise LearnerError(
+                f"'{each.name}' has no range: it is {least:g} in all rows; leave the column out"
+            )
     return ALCSR(problem.classes, problem.inputs, config, low=low, high=high, seed=seed)
 
 

@@ -170,7 +170,7 @@ def test_a_table_is_learnt_and_tested_on_rows_it_has_not_seen(
         (["experiment_1", "--set", "order=die"], "V342", "write die_fight_breed or"),
         (["experiment_1", "--with", "flips=0.1"], "V341", "there are thresholds, flipped"),
         (["experiment_1", "--with", "flipped=2"], "V402", "write one from 0 to 1"),
-        (["scitos_2", "--with", "tested=9"], "V402", "part 9 of 4"),
+        (["scitos_2", "--with", "tested=9"], "V402", "tested is 1 to 4"),
     ],
 )  # fmt: skip
 def test_what_can_not_be_learnt_is_told_with_what_to_write(
@@ -190,7 +190,10 @@ def test_what_can_not_be_learnt_is_told_with_what_to_write(
         ([], "PROBLEM is missing"),
         (["--resume"], "name the folder"),
         (["experiment_1", "--explore", "0.5", "--set", "explore=0.4"], "leave one out"),
-        (["experiment_1", "--set", "mutate"], "write NAME=VALUE"),
+        (["experiment_1", "--set", "mutate"], "write mutate=VALUE (got"),
+        (["experiment_1", "--cycles", "1e5"], "--cycles: write a whole number"),
+        (["experiment_1", "--cycles", "0"], "--cycles: the least is 1"),
+        (["experiment_1", "--explore", "2"], "--explore: the most is 1"),
         (["experiment_1", "--learner", "xcs"], "'xcs' is not one of"),
         (["nowhere.csv"], "nowhere.csv: no such file"),
     ],

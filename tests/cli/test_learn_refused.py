@@ -79,3 +79,24 @@ def test_an_experiment_goes_on_with_its_table_and_with_no_other(
 
     table.write_text(ROWS)
     assert main(["learn", "--resume", "--cycles", "300", "-o", "out"]) == 0
+
+
+def test_the_class_of_a_table_can_not_be_left_out(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("rows.csv").write_text(ROWS)
+
+    assert main(["learn", "rows.csv", "--with", "target=does", "--with", "without=does"]) == 2
+    assert "'does' is the class (target), so it can't be left out" in capsys.readouterr().err
+
+
+def test_a_declared_range_that_a_column_has_not_is_told_with_its_name(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("rows.csv").write_text(
+        ROWS.replace("far", "far,always").replace(",go", ",1,go").replace(",stop", ",1,stop")
+    )
+
+    asked = ["learn", "rows.csv", "--cycles", "200"]
+    assert main(asked) == 0
+    assert main([*asked, "--set", "range_is=declared"]) == 2
+    told = capsys.readouterr().err
+    assert "range_is=declared: error[V342]: 'always' has no range: it is 1 in all rows" in told

@@ -56,8 +56,8 @@ def test_a_share_of_rewards_is_flipped_and_no_test(share: float) -> None:
     [
         ("multiplexer_6", {"flipped": 1.5}, "flipped = 1.5"),
         ("checkerboard_3x3", {"divisions": 0}, "divisions = 0"),
-        ("scitos_2", {"folds": 1}, "part 4 of 1"),
-        ("scitos_2", {"tested": 5}, "part 5 of 4"),
+        ("scitos_2", {"folds": 1}, "folds = 1: write 2 parts"),
+        ("scitos_2", {"tested": 5}, "tested is 1 to 4"),
         ("scitos_2", {"shuffled": 1.0}, "leaves none"),
     ],
 )
