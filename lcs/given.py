@@ -58,3 +58,18 @@ def reward_of(given: float) -> float:
     if not np.isfinite(given):
         raise LearnerError(f"a reward is a finite number, and {given} is none")
     return float(given)
+
+
+def range_of(low: npt.ArrayLike, high: npt.ArrayLike, n: int) -> tuple[Array, Array]:
+    """The range of n inputs, low and high (n,): of all, or of each.
+
+    Raises:
+        LearnerError: they are not n finite numbers each, or low does not lie below high.
+    """
+    try:
+        ends = [np.array(np.broadcast_to(np.asarray(end, np.float64), n)) for end in (low, high)]
+    except ValueError as fault:
+        raise LearnerError(f"low and high are numbers, or {n} numbers each") from fault
+    if not (np.isfinite(ends).all() and (ends[0] < ends[1]).all()):
+        raise LearnerError(f"low must lie below high, both finite (got {low!r} and {high!r})")
+    return ends[0], ends[1]

@@ -25,7 +25,7 @@ from lcs.alcsr.readings import RangeIs
 from lcs.arrays import Array, Integers
 from lcs.course import Course
 from lcs.faults import LearnerError
-from lcs.given import input_of, inputs_of, reward_of, rewards_of
+from lcs.given import input_of, inputs_of, range_of, reward_of, rewards_of
 from lcs.rules.table import RuleTable
 from lcs.state import State, array_named, chance_from, from_plain, plain_of, plain_of_chance
 
@@ -73,17 +73,19 @@ class ALCSR:
         config: Config | None = None,
         *,
         reward_range: float = REWARD_RANGE,
-        low: npt.ArrayLike = np.inf,
-        high: npt.ArrayLike = -np.inf,
+        low: npt.ArrayLike | None = None,
+        high: npt.ArrayLike | None = None,
         seed: int = 0,
     ) -> None:
         if actions < 1 or inputs < 1:
             raise LearnerError(f"a learner needs actions and inputs: {actions} and {inputs} given")
         self.config = config or Config()
         self.population: Population = empty(actions, inputs, self.config, reward_range)
-        self.population.land.low[:] = low
-        self.population.land.high[:] = high
-        self._refuse_no_range()
+        if low is not None and high is not None:
+            land = self.population.land
+            land.low[:], land.high[:] = range_of(low, high, inputs)
+        elif self.config.readings.range_is is RangeIs.DECLARED:
+            raise LearnerError("RangeIs.DECLARED needs a range of the inputs: give low= and high=")
         self.chance = np.random.default_rng(seed)
         self._waits_with: Array | None = None
 
@@ -254,16 +256,6 @@ class ALCSR:
     def _parts(self) -> tuple[Rules, Corpses, Land, Numbers, Scratch]:
         parts = self.population
         return parts.rules, parts.corpses, parts.land, parts.numbers, parts.scratch
-
-    def _refuse_no_range(self) -> None:
-        land = self.population.land
-        is_declared = bool(np.isfinite(land.low).all() and np.isfinite(land.high).all())
-        if is_declared and not (land.low < land.high).all():
-            raise LearnerError("a range is from low to a higher high, for each input")
-        if self.config.readings.range_is is RangeIs.DECLARED and not is_declared:
-            raise LearnerError(
-                "RangeIs.DECLARED needs the range of the inputs: give low= and high="
-            )
 
     def _refuse_while_waiting(self) -> None:
         if self._waits_with is not None:

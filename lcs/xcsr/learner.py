@@ -9,7 +9,7 @@ import numpy.typing as npt
 from lcs.arrays import Array, Integers
 from lcs.course import Course, Kind
 from lcs.faults import LearnerError
-from lcs.given import input_of, inputs_of, reward_of, rewards_of
+from lcs.given import input_of, inputs_of, range_of, reward_of, rewards_of
 from lcs.rules.table import RuleTable
 from lcs.state import State, chance_from, from_plain, plain_of, plain_of_chance
 from lcs.xcsr.config import Config, Outside
@@ -59,7 +59,7 @@ class XCSR:
         self.config = config or Config()
         _refuse_config(self.config, actions)
         self.actions = actions
-        self.population: Population = empty(actions, self.config, *_range(low, high, inputs))
+        self.population: Population = empty(actions, self.config, *range_of(low, high, inputs))
         self.chance = np.random.default_rng(seed)
         self._is_trying = False
 
@@ -210,16 +210,6 @@ class XCSR:
                 "declare a wider one (low=, high=), or Config(outside=Outside.CLIPPED)"
             )
         return x
-
-
-def _range(low: npt.ArrayLike, high: npt.ArrayLike, n: int) -> tuple[Array, Array]:
-    try:
-        ends = [np.array(np.broadcast_to(np.asarray(end, np.float64), n)) for end in (low, high)]
-    except ValueError as fault:
-        raise LearnerError(f"low and high are numbers, or {n} numbers each") from fault
-    if not (np.isfinite(ends).all() and (ends[0] < ends[1]).all()):
-        raise LearnerError(f"low must lie below high, both finite (got {low!r} and {high!r})")
-    return ends[0], ends[1]
 
 
 def _refuse_config(config: Config, actions: int) -> None:

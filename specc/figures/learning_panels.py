@@ -52,7 +52,7 @@ def panels(
         axes = axes_at(figure, (LEFT, above - height), (WIDTH, height))
         axes.set_facecolor(palette.paper)
         bare(axes)
-        axes.set_xlim(0.0, end)
+        axes.set_xlim(0.0, max(end, 1.0))
         axes.xaxis.set_major_formatter(FuncFormatter(_thousands))
         axes.tick_params(labelbottom=False)
         above -= height + GAP

@@ -143,7 +143,13 @@ def test_each_switch_can_be_turned_on_alone(beyond: Beyond) -> None:
     learner = ALCSR(2, 2, Config(beyond=beyond), seed=1)
     learner.run(x, rewards)
 
+    without = ALCSR(2, 2, seed=1)
+    without.run(x, rewards)
     assert accuracy(learner, 3) > 0.8  # the thesis's own has .88 by then
+    if beyond.weighs_evidence:
+        assert not np.array_equal(learner.rules().weight, without.rules().weight)
+    elif not beyond.doubts:  # nothing is doubted where nobody withdraws
+        assert learner.rules().lower.tolist() != without.rules().lower.tolist()
 
 
 def test_all_together_find_each_field_of_a_board() -> None:

@@ -141,7 +141,7 @@ def test_a_range_that_is_declared_has_to_be_given_and_stays() -> None:
     declared = Config(readings=Readings(range_is=RangeIs.DECLARED))
     with pytest.raises(LearnerError, match="give low= and high="):
         ALCSR(2, 2, declared)
-    with pytest.raises(LearnerError, match="to a higher high"):
+    with pytest.raises(LearnerError, match="low must lie below high"):
         ALCSR(2, 2, low=[0.0, 1.0], high=1.0)
 
     learner = ALCSR(2, 2, declared, low=0.0, high=1.0)

@@ -72,7 +72,7 @@ def made(wanted: Wanted) -> Run:
     task = problem(wanted.experiment)
     x, rewards, right = task.drawn(wanted.cycles, np.random.default_rng([wanted.seed, 1]))
     is_declared = wanted.config.readings.range_is is RangeIs.DECLARED
-    low, high = (0.0, 1.0) if is_declared else (np.inf, -np.inf)
+    low, high = (0.0, 1.0) if is_declared else (None, None)
     learner = ALCSR(task.classes, task.inputs, wanted.config, low=low, high=high, seed=wanted.seed)
     begun = time.process_time()
     parts = []
