@@ -23,8 +23,10 @@ def learning_text(learnt: Learnt) -> str:
     """What was learnt in each run, and what the figures mean."""
     experiment = learnt.experiment
     runs = "a run" if len(learnt.runs) == 1 else f"{len(learnt.runs)} runs"
-    head = f"{learnt.problem.name} by {experiment.learner}: {runs} of {experiment.cycles:,} cycles"
-    runs_text = [_run_text(each) for each in learnt.summaries]
+    cycles = counted(experiment.cycles, "cycle")
+    head = f"{learnt.problem.name} by {experiment.learner}: {runs} of {cycles}"
+    is_table = isinstance(learnt.problem, Table)
+    runs_text = [_run_text(each, is_table=is_table) for each in learnt.summaries]
     return "\n\n".join([head, *runs_text, *_mean_text(learnt), *_rules_text(learnt)])
 
 
@@ -44,14 +46,18 @@ def _rules_text(learnt: Learnt) -> list[str]:
     ]
 
 
-def _run_text(one: Summary) -> str:
+def _run_text(one: Summary, *, is_table: bool) -> str:
+    """is_table: whether problems are rows, some kept to test on and the others shown repeatedly."""
+    rest = " kept to test on" if is_table else ""
+    asked = f"{counted(one.fresh, 'row' if is_table else 'fresh problem')}{rest}"
+    shown = "showings of rows" if is_table else "problems"
     rows = [
-        ("accuracy", f"{_percent(one.accuracy)} of {one.fresh:,} fresh problems{_unknown(one)}"),
+        ("accuracy", f"{_percent(one.accuracy)} of {asked}{_unknown(one)}"),
         ("performance", _performance(one)),
         ("rules", _rules(one)),
         ("births and deaths", f"{one.births:,} and {one.deaths:,}"),
-        ("learnt from", f"{one.tried:,} of {one.cycles:,} cycles; the others tested"),
-        ("speed", f"{one.per_second:,.0f} problems a second"),
+        ("learnt from", f"{one.tried:,} of {counted(one.cycles, 'cycle')}; the others tested"),
+        ("speed", f"{one.per_second:,.0f} {shown} a second"),
     ]
     return section(f"seed {one.seed}", [table(rows, INDENT)])
 
@@ -61,9 +67,7 @@ def _unknown(one: Summary) -> str:
     if one.uncovered:
         told += f"; {_percent(one.uncovered)} count as wrong, since an action has no rule there"
     if one.beyond >= NOTABLE:
-        told += (
-            f"; {_percent(one.beyond)} lie beyond what was learnt from, taken at its end"
-        )
+        told += f"; {_percent(one.beyond)} lie beyond what was learnt from, taken at its end"
     return told
 
 
@@ -79,7 +83,7 @@ def _performance(one: Summary) -> str:
 
 def _rules(one: Summary) -> str:
     told = f"{one.rules:,} at the end, {one.most_rules:,} at most"
-    told += f" (when {one.most_rules_at:,} cycles were learnt from)"
+    told += f" (after learning from {counted(one.most_rules_at, 'cycle')})"
     few = one.thinned
     return f"{told}; {few.rules:,} after compaction, {_percent(few.accuracy)} right"
 
