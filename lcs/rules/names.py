@@ -12,10 +12,14 @@ from lcs.rules.table import RuleTable
 @final
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The inputs, and the actions' names, in the order of a table's columns and indices."""
+    """The inputs, and the actions' names, in the order of a table's columns and indices.
+
+    case: what a rule was right or wrong in, one of them: "showing" where a row is shown again.
+    """
 
     inputs: tuple[Input, ...]
     actions: tuple[str, ...]
+    case: str = "case"
 
 
 def plain_names(table: RuleTable) -> Names:

@@ -11,7 +11,7 @@ from lcs.rules.experience import Experience
 from specc.learning import folder as folders
 from specc.learning.experiment import Experiment
 from specc.learning.resuming import keep, taken_up
-from specc.learning.running import Run, begun, go_on, standing
+from specc.learning.running import Run, begun, go_on, load, standing
 from specc.learning.summary import Summary, summed_up
 from specc.learning.thinning import figures_of, seen_by, thinned
 
@@ -63,6 +63,7 @@ def learnt_from(
         SpecError: the experiment can't be run, or a checkpoint can't be read or written.
         OSError: a checkpoint can't be read.
     """
+    load(experiment, problem, config)
     runs: list[Run] = []
     for seed in experiment.seeds:
         run = _taken_up_or_begun(experiment, problem, config, seed, folder)

@@ -52,7 +52,8 @@ def _of_rules(
     about = [f"{_about(learnt)[:-1]}, seed {run.seed}: {became}."]
     sheet = draw_rule_sheet(table, names, title, about=about, examples=inputs, style=style)
     yield f"{folder}/rules.svg", sheet
-    if problem.inputs == 2:
+    is_plane = problem.inputs == 2 and bool((table.low < table.high).all())
+    if is_plane:
         x, y = (each.name for each in problem.described)
         plane, dots = slice_through(table, names, x, y, {}), fresh(problem, run.seed, DOTS)
         areas = draw_rules(table, names, plane, title, about=about, examples=dots, style=style)

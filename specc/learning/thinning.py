@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from lcs.problems.problem import Problem
+from lcs.problems.table import Table
 from lcs.rules.compaction import Compacted, compact
 from lcs.rules.deciding import decide
 from lcs.rules.experience import Experience, remembered
@@ -47,7 +48,8 @@ def figures_of(small: RuleTable, run: Run, problem: Problem, count: int) -> Thin
 
 def names_of(problem: Problem) -> Names:
     """What inputs and actions are called in rules."""
-    return Names(problem.described, problem.labels)
+    case = "showing" if isinstance(problem, Table) else "case"
+    return Names(problem.described, problem.labels, case)
 
 
 def _noise(problem: Problem) -> float:

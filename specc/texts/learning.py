@@ -5,6 +5,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from lcs.problems.table import Table
 from lcs.rules.words import in_words
 from specc.learning.experiment import record_of
 from specc.learning.learning import Learnt
@@ -23,7 +24,7 @@ def learning_text(learnt: Learnt) -> str:
     """What was learnt in each run, and what the figures mean."""
     experiment = learnt.experiment
     runs = "a run" if len(learnt.runs) == 1 else f"{len(learnt.runs)} runs"
-    cycles = counted(experiment.cycles, "cycle")
+    cycles = _counted(experiment.cycles, "cycle")
     head = f"{learnt.problem.name} by {experiment.learner}: {runs} of {cycles}"
     is_table = isinstance(learnt.problem, Table)
     runs_text = [_run_text(each, is_table=is_table) for each in learnt.summaries]
@@ -49,14 +50,14 @@ def _rules_text(learnt: Learnt) -> list[str]:
 def _run_text(one: Summary, *, is_table: bool) -> str:
     """is_table: whether problems are rows, some kept to test on and the others shown repeatedly."""
     rest = " kept to test on" if is_table else ""
-    asked = f"{counted(one.fresh, 'row' if is_table else 'fresh problem')}{rest}"
+    asked = f"{_counted(one.fresh, 'row' if is_table else 'fresh problem')}{rest}"
     shown = "showings of rows" if is_table else "problems"
     rows = [
         ("accuracy", f"{_percent(one.accuracy)} of {asked}{_unknown(one)}"),
         ("performance", _performance(one)),
         ("rules", _rules(one)),
         ("births and deaths", f"{one.births:,} and {one.deaths:,}"),
-        ("learnt from", f"{one.tried:,} of {counted(one.cycles, 'cycle')}; the others tested"),
+        ("learnt from", f"{one.tried:,} of {_counted(one.cycles, 'cycle')}; the others tested"),
         ("speed", f"{one.per_second:,.0f} {shown} a second"),
     ]
     return section(f"seed {one.seed}", [table(rows, INDENT)])
@@ -83,7 +84,7 @@ def _performance(one: Summary) -> str:
 
 def _rules(one: Summary) -> str:
     told = f"{one.rules:,} at the end, {one.most_rules:,} at most"
-    told += f" (after learning from {counted(one.most_rules_at, 'cycle')})"
+    told += f" (after learning from {_counted(one.most_rules_at, 'cycle')})"
     few = one.thinned
     return f"{told}; {few.rules:,} after compaction, {_percent(few.accuracy)} right"
 
@@ -99,6 +100,10 @@ def _mean_text(learnt: Learnt) -> list[str]:
         ("rules", f"{np.mean(rules):,.0f} ({min(rules):,} to {max(rules):,})"),
     ]
     return [section("mean of all runs", [table(rows, INDENT)])]
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'s' * (count != 1)}"
 
 
 def _percent(share: float) -> str:

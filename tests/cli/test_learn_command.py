@@ -153,6 +153,33 @@ def test_a_table_is_learnt_and_tested_on_rows_it_has_not_seen(
     assert run["accuracy"] > 0.7
 
 
+def test_rows_of_a_table_are_called_so_and_shown_again_and_again(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("rows.csv").write_text("near,does\n" + "0.1,go\n0.9,stop\n0.2,go\n0.7,stop\n" * 5)
+
+    assert main(["learn", "rows.csv", *QUICK]) == 0
+    out = capsys.readouterr().out
+    assert "of 5 rows kept to test on" in out
+    assert "showings of rows a second" in out
+    assert " showings)" in out
+    assert "problems" not in out
+    assert " cases" not in out
+
+
+def test_a_run_of_one_cycle_is_told_as_one_and_without_warnings(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["learn", "checkerboard_3x3", "--cycles", "1", "--tests", "1", "-o", "out"]) == 0
+    out, err = capsys.readouterr()
+
+    assert "a run of 1 cycle\n" in out
+    assert "of 1 fresh problem;" in out
+    assert "1 cycles" not in out
+    assert "Warning" not in err
+    assert not Path("out/seed_0/areas.svg").exists()
+
+
 @pytest.mark.parametrize(
     ("asked", "code", "said"),
     [
