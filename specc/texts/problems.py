@@ -4,6 +4,7 @@ from typing import Any, Final
 
 from lcs.problems.registry import COLUMNS, MEANINGS, PROBLEMS, SPLIT
 from specc.learning.learners import LEARNERS
+from specc.learning.meanings import CONSTANTS, idle
 from specc.learning.settings import choices, listed, shown
 from verifier.report.layout import INDENT, section, table
 
@@ -16,9 +17,9 @@ def listing_text(learner: str) -> str:
     problems = [(name, offer.about) for name, offer in PROBLEMS.items()]
     problems.append((TABLE, "the rows of a table; its first line names the columns"))
     learners = [(name, known.about) for name, known in LEARNERS.items()]
+    config = LEARNERS[learner].config
     constants = [
-        (name, shown(value), choices(value).removeprefix("write ") if not _is_number(value) else "")
-        for name, value in listed(LEARNERS[learner].config)
+        (name, shown(value), _said_of(name, value, learner)) for name, value in listed(config)
     ]
     return "\n\n".join(
         [
@@ -43,6 +44,15 @@ def listing_record(learner: str) -> dict[str, Any]:
         "learners": {name: known.about for name, known in LEARNERS.items()},
         "constants": {name: shown(value) for name, value in listed(LEARNERS[learner].config)},
     }
+
+
+def _said_of(name: str, value: object, learner: str) -> str:
+    """What a constant means, what may be written, and whether it does nothing as all is set."""
+    said = CONSTANTS[learner][name]
+    if not _is_number(value):
+        said += f": {choices(value).removeprefix('write ')}"
+    while_ = idle(LEARNERS[learner].config).get(name)
+    return f"{said} (does nothing while {while_})" if while_ else said
 
 
 def _made_with() -> list[tuple[str, str, str]]:
