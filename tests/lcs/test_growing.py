@@ -188,3 +188,29 @@ def test_whoever_is_not_fed_for_too_long_starves() -> None:
 def test_what_needs_a_memory_says_so() -> None:
     with pytest.raises(LearnerError, match="grows needs a land that remembers"):
         Beyond(grows=True)
+
+
+def test_each_level_of_reward_gets_its_rules_with_any_number_of_actions() -> None:
+    """Three actions; the first has three levels of reward, the second two, the third one."""
+
+    def rewards(x: Array) -> Array:
+        first = np.where(x[:, 0] < 0.3, 10.0, np.where(x[:, 1] > 0.6, 2.0, 0.0))
+        return np.stack([first, np.where(x[:, 2] > 0.5, 5.0, -1.0), np.ones(len(x))], axis=1)
+
+    chance = np.random.default_rng(0)
+    x, fresh = chance.random((12_000, 3)), chance.random((10_000, 3))
+    learner = ALCSR(3, 3, GROWN, reward_range=11.0, seed=1)
+    learner.run(x, rewards(x))
+
+    taken = learner.decide(fresh)[0]
+    earned = rewards(fresh)[np.arange(len(fresh)), taken]
+    assert np.mean((taken >= 0) & (earned == rewards(fresh).max(axis=1))) > 0.995
+    table = learner.rules()
+    assert sorted(zip(table.action.tolist(), table.prediction.tolist(), strict=True)) == [
+        (0, 0.0),
+        (0, 2.0),
+        (0, 10.0),
+        (1, -1.0),
+        (1, 5.0),
+        (2, 1.0),
+    ]

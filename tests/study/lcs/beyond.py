@@ -14,6 +14,9 @@ from tests.study.lcs.tables import row
 
 SEEDS: Final = range(5)
 SHARE_TRIED: Final = 0.9
+STEP, MOST = 5_000, 8_000
+"""After so many cycles a run is given up that has more rules than that."""
+
 FEW: Final = 100_000
 MANY: Final = 1_000_000
 """Fresh problems at a place on the way, and at the end."""
@@ -97,7 +100,7 @@ class Seen:
 
 
 def seen(problem: Classes, tries: tuple[int, ...], config: Config, seed: int) -> list[Seen]:
-    """Learn a problem and look at it on the way."""
+    """Learn a problem and look at it on the way; given up where the rules become too many."""
     chance = np.random.default_rng([seed, 1])
     clean = replace(problem, flipped=0.0)
     learner = ALCSR(problem.classes, problem.inputs, config, seed=seed)
@@ -107,7 +110,10 @@ def seen(problem: Classes, tries: tuple[int, ...], config: Config, seed: int) ->
         done += cycles
         x, rewards, _ = problem.drawn(cycles, chance)
         begun = time.process_time()
-        learner.run(x, rewards)
+        for at in range(0, cycles, STEP):
+            learner.run(x[at : at + STEP], rewards[at : at + STEP])
+            if len(learner.rules()) > MOST:
+                return [Seen(each, np.nan, len(learner.rules()), np.nan) for each in tries]
         seconds += time.process_time() - begun
         fresh = MANY if count == tries[-1] else FEW
         x, _, right = clean.drawn(fresh, np.random.default_rng([seed, 2]))
