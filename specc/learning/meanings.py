@@ -97,10 +97,9 @@ OF_CORPSES: Final = (
     *("corpses", "corpse_neighbors", "corpse_rate", "sprout_width", "covered_is"),
     *("corpse_spans", "corpses_learn", "readings.corpse_rate", "seeding_by"),
 )
-OF_STRENGTH: Final = (
-    *("immature_vote", "error_cost", "metabolism_cost", "damaged_error", "damaged_by"),
-    *("error_of", "starved_at"),
-)
+OF_STRENGTH: Final = ("immature_vote", "error_cost", "damaged_error", "damaged_by", "error_of")
+"""Where who tastes wrong food shrinks; the cost of living can starve those who share, all the same.
+"""
 
 
 def idle(config: Any) -> dict[str, str]:

@@ -19,7 +19,7 @@ OTHERS = {
     "offspring_in": "pool", "generalization": "hull_and_beyond", "mutation_is": "always",
     "covered_is": "fed", "corpse_spans": "half_each", "corpses_learn": "halved",
     "readings.corpse_rate": "relative", "seeding_by": "sub_species", "damaged_by": "any",
-    "error_of": "range", "starved_at": "negative", "corpses": "3", "corpse_neighbors": "2",
+    "error_of": "range", "corpses": "3", "corpse_neighbors": "2",
     "breeding_neighbors": "3",
 }  # fmt: skip
 
@@ -50,7 +50,9 @@ def test_what_is_said_to_do_nothing_does_nothing() -> None:
         assert learnt_with(other) == usual, name
 
 
-@pytest.mark.parametrize("name", ["seeding", "mature_level", "sprouts", "explore"])
+@pytest.mark.parametrize(
+    "name", ["seeding", "mature_level", "sprouts", "explore", "metabolism_cost"]
+)
 def test_what_does_something_is_not_said_to_do_nothing(name: str) -> None:
     assert name not in idle(GROWN)
     assert learnt_with(configured(GROWN, {name: "1"}, "alcsr")) != learnt_with(GROWN)
