@@ -62,7 +62,9 @@ def _hand_down(term: Expr, bound: Interval, box: dict[str, tuple[float, float]])
         elif isinstance(node, Apply) and node.op in DOWN:
             parts = tuple(interval_of(part, box) for part in node.operands)
             loose = interval.outward(value.low, value.high, ulps=1, nan=False)
-            waiting.extend(zip(node.operands, DOWN[node.op](loose, *parts), strict=True))
+            handed = zip(node.operands, DOWN[node.op](loose, *parts), strict=True)
+            # Of what is told nothing, nothing follows: a power has a value where its base has none.
+            waiting.extend((part, least) for part, least in handed if least != ALL)
     return True
 
 
