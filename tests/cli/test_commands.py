@@ -246,7 +246,7 @@ def test_verify_runs_nobodys_code(capsys: pytest.CaptureFixture[str]) -> None:
         (["verify", str(ROOT / "README.md")], "V334"),
         (["init", "--template", "van_der_poll"], "V343"),
         (["check", "nowhere.yaml"], "S015"),
-        (["simulate", VDP, "--start", "x"], "NAME=VALUE"),
+        (["simulate", VDP, "--start", "x"], "write x=VALUE"),
         (["frobnicate"], "frobnicate"),
     ],
 )

@@ -160,7 +160,7 @@ def _counts(at: list[Seen]) -> str:
 
 def tell_switches(_: Path, __: int) -> None:
     """Print what each switch does alone, and what is missing without it."""
-    _tell_configs(SWITCHES, (multiplexer(2), multiplexer(2, SKEWED)))
+    _tell_configs(SWITCHES, (checkerboard(5),))
 
 
 def tell_numbers(_: Path, __: int) -> None:
