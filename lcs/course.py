@@ -7,15 +7,16 @@ from typing import Protocol, final
 import numpy.typing as npt
 
 from lcs.arrays import Array, Booleans, Integers
+from lcs.kernels import kinds
 from lcs.rules.table import RuleTable
 
 
 class Kind(IntEnum):
     """What a cycle was."""
 
-    TEST = 0
-    TRIED = 1
-    FORCED = 2  # tried, since some action was unknown
+    TEST = kinds.TEST
+    TRIED = kinds.TRIED
+    FORCED = kinds.FORCED  # tried, since some action was unknown
 
 
 @final

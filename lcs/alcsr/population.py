@@ -71,8 +71,17 @@ def _parts(population: Population) -> list[str]:
 
 def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Population:
     """Landscapes that nobody lives on, of which nothing is known."""
-    a, n = actions, inputs
-    rules = Rules(
+    return Population(
+        _no_rules(actions, inputs),
+        _no_corpses(actions, inputs),
+        _unknown_land(actions, inputs, config),
+        _scratch(actions, inputs, config),
+        numbers_of(config, reward_range),
+    )
+
+
+def _no_rules(a: int, n: int) -> Rules:
+    return Rules(
         living=np.zeros(a, np.int64),
         lower=np.zeros((a, ROOM, n)),
         upper=np.zeros((a, ROOM, n)),
@@ -93,15 +102,21 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         core_meals=np.zeros((a, ROOM), np.int64),
         core_wrong=np.zeros((a, ROOM), np.int64),
     )
-    corpses = Corpses(
+
+
+def _no_corpses(a: int, n: int) -> Corpses:
+    return Corpses(
         buried=np.zeros(a, np.int64),
         center=np.zeros((a, ROOM, n)),
         prediction=np.zeros((a, ROOM)),
         lower=np.zeros((a, ROOM, n)),
         upper=np.zeros((a, ROOM, n)),
     )
+
+
+def _unknown_land(a: int, n: int, config: Config) -> Land:
     known = config.beyond.remembers
-    land = Land(
+    return Land(
         low=np.full(n, np.inf),
         high=np.full(n, -np.inf),
         foods=np.zeros((a, n, known)),
@@ -113,8 +128,12 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         sample=np.zeros((a, n, min(known, SAMPLE)), np.int64),
         ordered=np.zeros(a, np.int64),
     )
+
+
+def _scratch(a: int, n: int, config: Config) -> Scratch:
+    known = config.beyond.remembers
     neighbors = 1 + max(config.breeding_neighbors, config.corpse_neighbors)
-    scratch = Scratch(
+    return Scratch(
         fed=np.zeros((a, ROOM), np.int64),
         fed_count=np.zeros(a, np.int64),
         order=np.zeros(ROOM, np.int64),
@@ -136,7 +155,6 @@ def empty(actions: int, inputs: int, config: Config, reward_range: float) -> Pop
         progress=np.array([-1, 0, 0, 0]),
         tally=np.zeros(5, np.int64),
     )
-    return Population(rules, corpses, land, scratch, numbers_of(config, reward_range))
 
 
 def numbers_of(config: Config, reward_range: float) -> Numbers:

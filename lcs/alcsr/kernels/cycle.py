@@ -34,10 +34,10 @@ from lcs.alcsr.kernels.remembering import penalty_of, remember
 from lcs.alcsr.kernels.withdrawing import withdraw
 from lcs.arrays import Array, Integers
 from lcs.compiled import kernel, part
+from lcs.kernels.kinds import FORCED, TEST, TRIED
 
 DIE, FIGHT, BREED = range(3)
 ORDERS = ((DIE, FIGHT, BREED), (FIGHT, DIE, BREED), (DIE, BREED, FIGHT))
-TEST, TRIED, FORCED = range(3)
 CYCLES, OWED, ALL = range(3)
 
 

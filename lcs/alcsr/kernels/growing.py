@@ -40,8 +40,11 @@ def sprout(
     x: Array,
     reward: float,
     rng: np.random.Generator,
-) -> tuple[int, int]:
-    """The best of `sprouts` bodies grown around x, in `scratch.body`; its right and wrong foods."""
+) -> tuple[int, int, float]:
+    """The best of `sprouts` bodies grown around x, in `scratch.body`.
+
+    Returns its right and its wrong foods, and the evidence for it, in right foods.
+    """
     body = scratch.body
     share = share_of(land, a, reward)
     final = penalty_of(share, land.noise[a])
@@ -59,7 +62,7 @@ def sprout(
             body[3] = body[1]
     body[0] = body[2]
     body[1] = body[3]
-    return best_right, best_wrong
+    return best_right, best_wrong, best
 
 
 @part

@@ -8,7 +8,7 @@ from lcs.alcsr.kernels.hunger import due_to_grow
 from lcs.alcsr.kernels.layout import BRED, Land, Numbers, Rules, Scratch
 from lcs.alcsr.kernels.matching import volume_of
 from lcs.alcsr.kernels.reaching import reach
-from lcs.alcsr.kernels.remembering import least_evidence, penalty_of, share_of
+from lcs.alcsr.kernels.remembering import least_evidence
 from lcs.arrays import Array
 from lcs.compiled import part
 
@@ -57,9 +57,8 @@ def bear_sprout(
     k = rules.living[a]
     if k == rules.prediction.shape[1]:
         return
-    right, wrong = sprout(land, numbers, scratch, a, x, reward, rng)
-    penalty = penalty_of(share_of(land, a, reward), land.noise[a])
-    if right - penalty * wrong < least_evidence(land, a, land.noise[a]):
+    right, wrong, evidence = sprout(land, numbers, scratch, a, x, reward, rng)
+    if evidence < least_evidence(land, a, land.noise[a]):
         return
     clear(rules, a, k, reward)
     take_body(rules, land, scratch, a, k, right, wrong)

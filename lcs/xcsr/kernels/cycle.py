@@ -4,6 +4,7 @@ import numpy as np
 
 from lcs.arrays import Array, Integers
 from lcs.compiled import kernel, part
+from lcs.kernels.kinds import FORCED, TEST, TRIED
 from lcs.xcsr.kernels.breeding import breed
 from lcs.xcsr.kernels.deleting import delete
 from lcs.xcsr.kernels.layout import (
@@ -29,8 +30,6 @@ from lcs.xcsr.kernels.matching import (
     predict,
 )
 from lcs.xcsr.kernels.updating import subsume_within, update
-
-TEST, TRIED, FORCED = range(3)
 
 
 @part
