@@ -7,4 +7,5 @@ import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Integers: TypeAlias = npt.NDArray[np.int64]
+Counts: TypeAlias = npt.NDArray[np.int16]
 Booleans: TypeAlias = npt.NDArray[np.bool_]

@@ -240,7 +240,8 @@ def decide(
             known = known and scratch.fed_count[a] > 0
         if known:
             actions[t] = best_of(rules, land, numbers, scratch, rng)
-            expected[t] = scratch.votes
+            for a in range(rules.living.size):  # copying whole rows compiles for seconds
+                expected[t, a] = scratch.votes[a]
         else:
             actions[t] = -1
 

@@ -6,7 +6,7 @@ Rules of landscape a stand in [a, :living[a]]; where one is removed the last tak
 
 from typing import NamedTuple
 
-from lcs.arrays import Array, Booleans, Integers
+from lcs.arrays import Array, Booleans, Counts, Integers
 
 
 class Rules(NamedTuple):
@@ -130,7 +130,7 @@ class Scratch(NamedTuple):
     deaths. pool (C,): of breeding; able (C,): those fit for it. near, distance (K,): neighbors.
     votes (A,). fractions (2, n): of covering.
     Of growth: body (4, n), lower and upper, now and at best; axes (n,), place (n,), losses (2 n,);
-    values, signs, outside and eaters (N,), of each food that is remembered.
+    values, signs, outside and eaters (N,), of each food that is remembered; picked (N + 1,).
     progress: `STAGE`, `SEED`, `POOL`, `ACTION`.
     tally: how many were `COVERED` and `BRED`, and died `POISONED`, `STARVED` and `EATEN`.
     """
@@ -151,7 +151,8 @@ class Scratch(NamedTuple):
     losses: Array
     values: Array
     signs: Array
-    outside: Integers
+    outside: Counts
+    picked: Integers
     eaters: Integers
     progress: Integers
     tally: Integers

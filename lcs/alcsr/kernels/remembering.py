@@ -3,7 +3,7 @@
 import numpy as np
 
 from lcs.alcsr.kernels.layout import Land
-from lcs.arrays import Array, Integers
+from lcs.arrays import Array, Counts
 from lcs.compiled import part
 
 HARDEST = 20.0
@@ -84,7 +84,7 @@ def top_of(upper: float, high: float) -> float:
 
 @part
 def count_outside(
-    land: Land, a: int, total: int, lower: Array, upper: Array, outside: Integers
+    land: Land, a: int, total: int, lower: Array, upper: Array, outside: Counts
 ) -> None:
     """In how many dimensions each of the first `total` foods lies outside of a body (n,)."""
     outside[:total] = 0
@@ -98,7 +98,7 @@ def count_outside(
 
 
 @part
-def meals_in(land: Land, a: int, reward: float, outside: Integers) -> tuple[int, int]:
+def meals_in(land: Land, a: int, reward: float, outside: Counts) -> tuple[int, int]:
     """How many remembered foods inside are of this type, and how many are not."""
     right, wrong = 0, 0
     rewards = land.rewards[a]

@@ -27,15 +27,15 @@ def sort_in(land: Land, scratch: Scratch, a: int) -> None:
         order = land.order[a, i]
         kept = 0
         for k in order[: total if land.ordered[a] >= room else land.ordered[a]]:
-            if (k - first) % room >= since:
-                order[kept] = k
-                kept += 1
+            ago = k - first
+            order[kept] = k
+            kept += ago + room * (ago < 0) >= since
         merge_in(land.foods[a, i], order, kept, first, since, scratch.values)
         chosen = 0
         for k in order[:total]:
-            if k < land.sample.shape[2]:
+            if chosen < land.sample.shape[2]:
                 land.sample[a, i, chosen] = k
-                chosen += 1
+                chosen += k < land.sample.shape[2]
     land.ordered[a] = land.met[a]
 
 
