@@ -18,6 +18,7 @@ import numpy.typing as npt
 from lcs.alcsr.learner import ALCSR
 from lcs.faults import LearnerError
 from lcs.state import Saved, State
+from lcs.steps.learner import StepsLearner
 from lcs.xcsr.learner import XCSR
 
 FORMAT: Final = "specc learner"
@@ -27,6 +28,7 @@ HEADER: Final = "header.json"
 KINDS: Final[Mapping[str, Callable[[State], Any]]] = {
     "ALCSR": ALCSR.from_state,
     "XCSR": XCSR.from_state,
+    "StepsLearner": StepsLearner.from_state,
 }
 """How a learner of each kind is made."""
 

@@ -1,7 +1,9 @@
 """The constants of learning over several steps."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
+
+from lcs.faults import LearnerError
 
 
 @final
@@ -26,3 +28,21 @@ class Config:
     first: int = 5_000
     generations: int = 4
     longest: int = 200
+
+
+SHARES: Final = ("explore", "discount")
+COUNTS: Final = ("memories", "fed", "families", "first", "generations", "longest")
+
+
+def refuse_unfit(config: Config) -> None:
+    """Refuse constants that mean nothing.
+
+    Raises:
+        LearnerError: a share is not from 0 to 1, or a count is below 1.
+    """
+    for name in SHARES:
+        if not 0.0 <= getattr(config, name) <= 1.0:
+            raise LearnerError(f"{name} is from 0 to 1; got {getattr(config, name):g}")
+    for name in COUNTS:
+        if getattr(config, name) < 1:
+            raise LearnerError(f"{name} is 1 or more; got {getattr(config, name):g}")

@@ -1,7 +1,7 @@
 """A learner for delayed rewards: the land remembers steps, and bodies divide in it."""
 
 from dataclasses import dataclass
-from typing import Final, final
+from typing import Any, Final, Self, final
 
 import numpy as np
 import numpy.typing as npt
@@ -11,9 +11,19 @@ from lcs.faults import LearnerError
 from lcs.given import input_of, inputs_of, reward_of
 from lcs.problems.steps import Plane, World
 from lcs.rules.table import RuleTable
-from lcs.steps.config import Config
+from lcs.state import (
+    State,
+    array_named,
+    arrays_of,
+    chance_from,
+    from_plain,
+    plain_of,
+    plain_of_chance,
+)
+from lcs.steps.config import Config, refuse_unfit
 from lcs.steps.kernels import episodes, growing, voting
-from lcs.steps.kernels.layout import Bodies, Land, Numbers
+from lcs.steps.kernels.layout import Bodies, Numbers
+from lcs.steps.population import empty_land, one_body, restored_bodies, restored_land
 
 LONGEST: Final = 500
 
@@ -34,6 +44,22 @@ class Episodes:
 
 
 @final
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is saved of a learner beside its arrays.
+
+    said: the action that waits for what it led to, as `voting.tried` says it; None for none.
+    """
+
+    actions: int
+    inputs: int
+    config: Config
+    due: int
+    chance: dict[str, Any]
+    said: int | None
+
+
+@final
 class StepsLearner:
     """A learner for several steps with a random state of its own.
 
@@ -42,14 +68,20 @@ class StepsLearner:
         inputs: how many numbers a place has.
         config: the constants.
         seed: of all its chance.
+
+    Raises:
+        LearnerError: a constant is out of its range, or there is no action or input.
     """
 
     def __init__(
         self, actions: int, inputs: int, config: Config | None = None, *, seed: int = 0
     ) -> None:
         self.config = config or Config()
-        self.land = _empty_land(self.config.memories, inputs)
-        self.bodies = _one_body(actions, inputs)
+        refuse_unfit(self.config)
+        if actions < 1 or inputs < 1:
+            raise LearnerError(f"a learner needs actions and inputs: {actions} and {inputs} given")
+        self.land = empty_land(self.config.memories, inputs)
+        self.bodies = one_body(actions, inputs)
         self.due = self.config.first
         self.chance = np.random.default_rng(seed)
         self._waits: tuple[Array, int] | None = None
@@ -185,6 +217,41 @@ class StepsLearner:
             high=high,
         )
 
+    def state(self) -> State:
+        """All that it is, now; between an action and what it led to, too."""
+        kept = Kept(
+            actions=self.actions,
+            inputs=self._n,
+            config=self.config,
+            due=self.due,
+            chance=plain_of_chance(self.chance),
+            said=None if self._waits is None else self._waits[1],
+        )
+        arrays = arrays_of("land", self.land) | arrays_of("bodies", self.bodies)
+        if self._waits is not None:
+            arrays["waits_at"] = self._waits[0].copy()
+        return State("StepsLearner", plain_of(kept), arrays)
+
+    @classmethod
+    def from_state(cls, state: State) -> Self:
+        """The learner that had this state: it goes on bit for bit as that one would.
+
+        Raises:
+            LearnerError: the state is of another version, or damaged.
+        """
+        kept = from_plain(Kept, state.plain, "values")
+        learner = cls(kept.actions, kept.inputs, kept.config)
+        learner.land = restored_land(learner.land, kept.actions, state.arrays)
+        learner.bodies = restored_bodies(learner.bodies, state.arrays)
+        learner.due = kept.due
+        learner.chance = chance_from(kept.chance)
+        if kept.said is not None:
+            if not -kept.actions <= kept.said < kept.actions:
+                raise LearnerError(f"'values.said' is {kept.said}, and there is no such action")
+            place = input_of(array_named("waits_at", state.arrays), kept.inputs)
+            learner._waits = (place, kept.said)
+        return learner
+
     def _run_compiled(
         self, world: Plane, told: Array, done: int, outside: np.random.Generator
     ) -> int:
@@ -229,24 +296,3 @@ class StepsLearner:
 
 def _told(told: Array, bodies: Integers) -> Episodes:
     return Episodes(told[:, 0].astype(np.int64), told[:, 1], told[:, 2] > 0.0, bodies)
-
-
-def _empty_land(memories: int, inputs: int) -> Land:
-    return Land(
-        x=np.zeros((memories, inputs)),
-        action=np.zeros(memories, np.int64),
-        reward=np.zeros(memories),
-        after=np.zeros((memories, inputs)),
-        ends=np.zeros(memories, np.bool_),
-        seen=np.zeros(1, np.int64),
-    )
-
-
-def _one_body(actions: int, inputs: int) -> Bodies:
-    return Bodies(
-        lower=np.full((1, inputs), -np.inf),
-        upper=np.full((1, inputs), np.inf),
-        meals=np.zeros((1, actions), np.int64),
-        expected=np.zeros((1, actions)),
-        first=np.array([0, 1]),
-    )
