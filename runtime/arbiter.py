@@ -10,10 +10,13 @@ The *register* of an arbiter is the vector that its code may read: reads, contro
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import final
+from typing import Final, final
 
 from runtime.code import Code
 from runtime.program import Binding, Constant, Control, Kind, Origin, Output, Program, Unit
+
+LEARNERS: Final = ("alcsr", "xcsr")
+"""What rules can be learned by."""
 
 
 @final
@@ -50,6 +53,7 @@ class Rule:
 
     when: None for always. until: once it held, it goes on holding until this is not zero
     (hysteresis); None where it ends with `when`. lasts: it holds for at least so many seconds.
+    right, wrong: of a learned rule, how often its choice was right in training.
     """
 
     choice: int
@@ -57,6 +61,8 @@ class Rule:
     until: Code | None
     lasts: float
     origin: str
+    right: int = 0
+    wrong: int = 0
 
 
 @final
@@ -96,7 +102,9 @@ class Arbiter:
     rules: of RULES the first that holds is chosen; of SUBSUMPTION all that hold are, the first
     being the highest layer. weights: (k,) codes, of WEIGHTS. plan: of PLAN, a program with modes
     whose values are the choices. module: of MODULE, `package.module:function`.
-    bindings: where reads, controls and `choice` stand in a log.
+    bindings: where reads, controls and `choice` stand in a log. learner: what its rules were
+    learned by, one of `LEARNERS`; empty where its author wrote them. A learned
+    arbiter is one of RULES whose last rule always holds.
     """
 
     name: str
@@ -116,6 +124,7 @@ class Arbiter:
     bindings: tuple[Binding, ...]
     judge_when: Code | None
     source: Origin
+    learner: str = ""
 
     @property
     def register(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Final, final
 
 from runtime import artifact
-from runtime.arbiter import Arbiter
+from runtime.arbiter import LEARNERS, Arbiter, Paradigm
 from runtime.architecture import Architecture, Node
 from runtime.code import Code
 from runtime.container import ArtifactError, Member, join, split
@@ -34,7 +34,7 @@ class Wired:
     plans: tuple[int, ...]
 
 
-DOCUMENT: Final = Document("architecture", "wired", 1, Wired)
+DOCUMENT: Final = Document("architecture", "wired", 2, Wired)
 
 
 def to_bytes(architecture: Architecture, body: Body) -> bytes:
@@ -102,12 +102,24 @@ def faults(architecture: Architecture, body: Body) -> Iterator[str]:
         yield from _of_node(node, architecture)
     for arbiter in architecture.arbiters:
         yield from _unreadable(arbiter.name, _codes(arbiter), arbiter.register)
+        yield from _unlearned(arbiter)
     for channel in architecture.channels:
         resolution = channel.resolution
         if any(not 0 <= place < nodes for place in resolution.nodes):
             yield f"the channel '{channel.name}' is resolved between nodes that there are not"
         if not -1 <= resolution.arbiter < nodes:
             yield f"the channel '{channel.name}' is resolved by a node that there is not"
+
+
+def _unlearned(arbiter: Arbiter) -> Iterator[str]:
+    """A learned arbiter has rules, the last of which always holds."""
+    if arbiter.learner not in {"", *LEARNERS}:
+        yield f"'{arbiter.name}' learned by '{arbiter.learner}', which is not known"
+    if not arbiter.learner:
+        return
+    is_of_rules = arbiter.paradigm is Paradigm.RULES
+    if not is_of_rules or not arbiter.rules or arbiter.rules[-1].when is not None:
+        yield f"'{arbiter.name}' learned, and has no rule that holds where no other does"
 
 
 def _of_node(node: Node, architecture: Architecture) -> Iterator[str]:

@@ -6,6 +6,7 @@ from typing import final
 from runtime.architecture import Architecture
 from runtime.program import Origin
 from runtime.requirement import Requirement
+from runtime.training import Training
 from runtime.world.model import Body, Pose, World
 
 
@@ -36,7 +37,7 @@ class Scenario:
 
     step: seconds of one step of physics; every period, response time, rate and latency is a
     multiple of it. beginnings: by `robot.node.state`, the values (SI) that internal states start
-    from.
+    from. training: how an arbiter in it learns, where one does.
     """
 
     name: str
@@ -49,3 +50,4 @@ class Scenario:
     beginnings: dict[str, float]
     requirements: tuple[Requirement, ...]
     source: Origin
+    training: Training | None = None

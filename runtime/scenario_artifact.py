@@ -16,6 +16,7 @@ from runtime.document import Document
 from runtime.requirement_faults import faults_of
 from runtime.scenario import Robot, Scenario, Start
 from runtime.scheduler.clock import whole_steps
+from runtime.training_faults import faults_of as faults_of_training
 from runtime.world.heights import BITS, ranges_of
 
 
@@ -43,7 +44,7 @@ SHORTEST: Final = 1e-9
 """Seconds: the shortest step that stamps tell apart."""
 LONGEST: Final = 9e9
 """Seconds: the longest run whose nanoseconds are counted in 64 bits."""
-DOCUMENT: Final = Document("scenario", "staged", 1, Staged)
+DOCUMENT: Final = Document("scenario", "staged", 2, Staged)
 
 
 def to_bytes(scenario: Scenario) -> bytes:
@@ -109,6 +110,8 @@ def _faults(scenario: Scenario) -> Iterator[str]:
     yield from faults_of_times(scenario.robots, scenario.step)
     for requirement in scenario.requirements:
         yield from faults_of(requirement)
+    if scenario.training is not None:
+        yield from faults_of_training(scenario.training, scenario.robots)
 
 
 def _heights(scenario: Scenario) -> list[tuple[float, float]]:

@@ -73,7 +73,7 @@ def test_what_was_cut_or_altered_is_refused(data: bytes) -> None:
         (b'"architecture": 0', b'"architecture": 1', "lacks the architecture of 'r'"),
         (b'"step": 0.0', b'"step": 0.9', "no multiple of the step"),
         (b'"duration": 60.0', b'"duration": -6.0', "no step or no duration"),
-        (b'"format": 1', b'"format": 2', "this version reads 1"),
+        (b'"format": 2', b'"format": 1', "this version reads 2"),
     ],
 )
 def test_a_document_that_does_not_fit_is_refused(
