@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from runtime.rollout import Rollout as Rollout
     from spec_schema.diagnostics import Diagnostic as Diagnostic
     from spec_schema.diagnostics import SpecError as SpecError
+    from specc.book.loading import LoadedBook as LoadedBook
+    from specc.book.loading import load_book as load_book
     from specc.claiming import check_claims as check_claims
     from specc.comparing import compare_behaviors as compare_behaviors
     from specc.drawn import draw as draw
@@ -63,6 +65,8 @@ HOMES = {
     "SpecError": "spec_schema.diagnostics",
     "Verification": "specc.verifying.trace",
     "check": "compiler.check",
+    "load_book": "specc.book.loading",
+    "LoadedBook": "specc.book.loading",
     "check_claims": "specc.claiming",
     "compare_behaviors": "specc.comparing",
     "compile_spec": "specc.loading",

@@ -1,0 +1,160 @@
+"""All that a book is made of, gathered once: what was compiled, and what was found out of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias, final
+
+from runtime import architecture_artifact, scenario_artifact
+from runtime.architecture import Architecture, Node
+from runtime.program import Program
+from runtime.scenario import Scenario
+from runtime.world.model import Body
+from spec_schema.diagnostics import Diagnostic
+from specc import loading
+from specc.book.manifest import Setting
+from specc.book.origins import renamed
+from specc.book.settings import settings_of
+from specc.book.sources import Sources, sources_of
+from specc.book.tables import Sheet, sheets_of
+from specc.faults import fault
+from specc.portraying import portrait
+from verifier.topology.features import Portrait
+
+Progress: TypeAlias = Callable[[str, int, int], None]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Shown:
+    """A node with what the book shows of it beside its spec; nothing of what is no behavior."""
+
+    node: Node
+    settings: tuple[Setting, ...] = ()
+    portraits: tuple[tuple[Setting, Portrait], ...] = ()
+    sheets: tuple[Sheet, ...] = ()
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Drawn:
+    """An architecture with its body, and what is shown of each node, in their order."""
+
+    architecture: Architecture
+    body: Body
+    notes: tuple[str, ...]
+    robots: tuple[str, ...]
+    nodes: tuple[Shown, ...]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Contents:
+    """A book's contents. Every file in what was compiled is named as it is in the book.
+
+    scenario: None of the book of an architecture. artifact: its bytes.
+    """
+
+    name: str
+    about: str
+    spec: str
+    sources: Sources
+    artifact: bytes
+    scenario: Scenario | None
+    architectures: tuple[Drawn, ...]
+    warnings: tuple[Diagnostic, ...]
+
+    @property
+    def kind(self) -> str:
+        """What the book is of."""
+        return "architecture" if self.scenario is None else "scenario"
+
+
+def gathered(path: Path, progress: Progress, *, allow_code: bool = False) -> Contents:
+    """Compile an architecture or a scenario, and find out all that its book shows.
+
+    Raises:
+        SpecError: with everything that is wrong with it; or it is neither (V430).
+    """
+    kind = loading.kind_of(path)
+    if path.suffix == ".specc" or kind not in {"architecture", "scenario"}:
+        message = "a book is made of the spec of an architecture or of a scenario"
+        raise fault("V430", path, message, "name such a spec (.yaml)")
+    if kind == "scenario":
+        return _of_scenario(path, progress, allow_code=allow_code)
+    return _of_architecture(path, progress, allow_code=allow_code)
+
+
+def _of_architecture(path: Path, progress: Progress, *, allow_code: bool) -> Contents:
+    made = loading.compile_architecture_spec(path, progress, allow_code=allow_code)
+    sources = sources_of(path, made.architecture, made.body)
+    architecture = renamed(made.architecture, sources.name_of)
+    body = renamed(made.body, sources.name_of)
+    return Contents(
+        name=architecture.name,
+        about=architecture.about,
+        spec=architecture.source.file,
+        sources=sources,
+        artifact=architecture_artifact.to_bytes(architecture, body),
+        scenario=None,
+        architectures=(drawn(architecture, body, made.notes, (), progress),),
+        warnings=made.warnings,
+    )
+
+
+def _of_scenario(path: Path, progress: Progress, *, allow_code: bool) -> Contents:
+    made = loading.compile_scenario_spec(path, progress, allow_code=allow_code)
+    sources = sources_of(path, made.scenario)
+    scenario = renamed(made.scenario, sources.name_of)
+    alike: dict[str, list[str]] = {}
+    for robot in scenario.robots:
+        alike.setdefault(robot.architecture.source.file, []).append(robot.name)
+    first = {robot.architecture.source.file: robot for robot in reversed(scenario.robots)}
+    return Contents(
+        name=scenario.name,
+        about=scenario.about,
+        spec=scenario.source.file,
+        sources=sources,
+        artifact=scenario_artifact.to_bytes(scenario),
+        scenario=scenario,
+        architectures=tuple(
+            drawn(first[file].architecture, first[file].body, (), tuple(robots), progress)
+            for file, robots in alike.items()
+        ),
+        warnings=made.warnings,
+    )
+
+
+def drawn(
+    architecture: Architecture,
+    body: Body,
+    notes: tuple[str, ...],
+    robots: tuple[str, ...],
+    progress: Progress,
+) -> Drawn:
+    """What the book shows of each node of an architecture."""
+    nodes = []
+    for done, node in enumerate(architecture.nodes):
+        progress(f"looking at {node.name}", done, len(architecture.nodes))
+        if node.behavior < 0:
+            nodes.append(Shown(node))
+            continue
+        nodes.append(_behavior(architecture, node))
+    return Drawn(architecture, body, notes, robots, tuple(nodes))
+
+
+def _behavior(architecture: Architecture, node: Node) -> Shown:
+    program = architecture.programs[node.behavior]
+    settings, wired = settings_of(architecture, node)
+    sheets: list[Sheet] = []
+    portraits: list[tuple[Setting, Portrait]] = []
+    for setting in settings:
+        sheets += sheets_of(program, setting.name, setting.controls, wired)
+        portraits.append((setting, _portrait(program, setting)))
+    return Shown(node, settings, tuple(portraits), tuple(sheets))
+
+
+def _portrait(program: Program, setting: Setting) -> Portrait:
+    units = {control.name: control.unit.scale for control in program.controls}
+    held = {name: value / units[name] for name, value in setting.controls.items()}
+    return portrait(program, None, held)

@@ -1,0 +1,96 @@
+"""A book, from a spec to its folder."""
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Final
+
+from specc import __version__
+from specc.book import manifest
+from specc.book.contents import Contents, Progress, gathered
+from specc.book.entries import architecture_entry
+from specc.book.folder import MANIFEST, refuse_early, write_folder
+from specc.book.manifest import Book
+from specc.book.naming import Names, names_of
+from specc.book.tables import as_csv, as_npz
+from specc.book.words import chapters_of
+from specc.figures.palettes import PALETTES
+from specc.figures.portrait import draw_portrait
+from specc.figures.style import rendered
+from specc.figures.style_names import Style
+from specc.pages.book_page import book_pages
+
+READER: Final = "data/read_table.py"
+
+
+def export_book(
+    spec: Path | str,
+    folder: Path | str,
+    progress: Progress,
+    *,
+    allow_code: bool = False,
+) -> Book:
+    """Write the book of an architecture or a scenario, and return its manifest.
+
+    Raises:
+        SpecError: the spec is wrong, or the book can't be put there.
+    """
+    folder = Path(folder)
+    refuse_early(folder)
+    contents = gathered(Path(spec), progress, allow_code=allow_code)
+    found = files_of(contents, progress)
+    write_folder(folder, found)
+    return manifest.from_bytes(found[MANIFEST])
+
+
+def files_of(contents: Contents, progress: Progress) -> dict[str, bytes]:
+    """Every file of the book, by its path in it."""
+    names = names_of(contents)
+    found = {name: path.read_bytes() for path, name in contents.sources.names.items()}
+    found[manifest.ARTIFACTS[contents.kind]] = contents.artifact
+    found[READER] = files("specc.book").joinpath("read_table.py").read_bytes()
+    found |= _data(contents, names)
+    found |= _figures(contents, names, progress)
+    chapters = chapters_of(contents, names)
+    found |= book_pages(contents.name, chapters)
+    book = _book(contents, names, found)
+    return {MANIFEST: manifest.to_bytes(book), **found}
+
+
+def _data(contents: Contents, names: Names) -> dict[str, bytes]:
+    found = {}
+    for of in contents.architectures:
+        for shown in of.nodes:
+            if shown.sheets:
+                npz, text = names.data(of.architecture, shown.node)
+                found[npz] = as_npz(shown.sheets)
+                found[text] = as_csv(shown.sheets)
+    return found
+
+
+def _figures(contents: Contents, names: Names, progress: Progress) -> dict[str, bytes]:
+    """Every figure twice: for light and for dark pages."""
+    found = {}
+    for of in contents.architectures:
+        for done, shown in enumerate(of.nodes):
+            progress(f"drawing {shown.node.name}", done, len(of.nodes))
+            for k, (_, portrait) in enumerate(shown.portraits):
+                name = names.portrait(of.architecture, shown.node, k)
+                for style, end in ((Style.SCREEN, ".svg"), (Style.DARK, ".dark.svg")):
+                    picture = draw_portrait(portrait, style)
+                    found[f"figures/{name}{end}"] = rendered(picture, "svg", PALETTES[style])
+    return found
+
+
+def _book(contents: Contents, names: Names, found: dict[str, bytes]) -> Book:
+    return Book(
+        kind=contents.kind,
+        name=contents.name,
+        about=contents.about,
+        specc=__version__,
+        spec=contents.spec,
+        artifact=manifest.ARTIFACTS[contents.kind],
+        seed=None if contents.scenario is None else contents.scenario.seed,
+        architectures=tuple(architecture_entry(of, names) for of in contents.architectures),
+        requirements=(),
+        files=tuple(manifest.file_entry(path, data) for path, data in sorted(found.items())),
+    )
