@@ -1,8 +1,8 @@
 """Fields as numbers: rates and outputs on grids, for readers who have numpy and no specc.
 
-Each quantity gets a table of its own, over those states (and controls that are wired) that change
-it, so that a field of many states needs no grid over all of them. Between the nodes a reader goes
-on linearly. The grid is refined along the axis that bends most until that is near enough, or the
+Each quantity gets a table of its own (in each mode one), over those states and wired controls that
+change it there, so that a field of many states needs no grid over all of them. Between the nodes a
+reader goes on linearly. Nodes are added where the values bend until that is near enough, or the
 table is as large as it may be; then the error is measured at random places, against the program.
 Values are in the spec's own units.
 """
@@ -11,25 +11,30 @@ import csv
 import io
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final, final
+from typing import Final, TypeAlias, final
 
 import numpy as np
 
-from runtime.arrays import Array
-from runtime.code import ARITY, Code
+from runtime.arrays import Array, Booleans
+from runtime.code import Code
 from runtime.flow import Flow, flow_of, next_states, rates
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
+from spec_schema.expressions.algebra import is_number
+from specc.book.formulas import in_mode, reads
 
-FINE: Final = 1e-3
+FINE: Final = 2e-3
 """What a table may be off by, of the largest value in it, as its own bending tells."""
-LARGEST: Final = 60_000
+LARGEST: Final = 50_000
 """Nodes of a table at most."""
 FIRST: Final = 5
 """Nodes along an axis at first."""
 PROBES: Final = 4000
 """Random places at which the error is measured."""
+NARROWEST: Final = 1e-4
+"""Of an axis: narrower intervals are not halved, as at a jump."""
 SEED: Final = 36
+Part: TypeAlias = State | Control
 
 
 @final
@@ -54,146 +59,190 @@ class Sheet:
 def sheets_of(
     program: Program, setting: str, controls: Mapping[str, float], wired: Iterable[str]
 ) -> tuple[Sheet, ...]:
-    """A table for each driven state and each output of a behavior.
+    """A table for each driven state and each output of a behavior; one for each mode.
 
     controls: at what values (SI) they are held; wired: those that move, and are axes instead.
     """
     flow = flow_of(program)
     moving = frozenset(wired)
     word = "next" if program.field.is_map else "rate"
-    found = []
+    found: list[Sheet] = []
     for state in program.states:
         if state.name in program.field.driven:
-            unit = state.unit.text if program.field.is_map else _per_second(state.unit.text)
-            reader = _Reader(flow, state.name, dict(controls), state.unit.scale)
-            found.append(_sheet(reader, f"{word} {state.name}", setting, unit, moving))
+            unit = state.unit.text if program.field.is_map else per_second(state.unit.text)
+            what = Wanted(f"{word} {state.name}", unit, state.unit.scale, state.name)
+            found += _in_modes(flow, what, setting, controls, moving)
     for output in program.outputs:
-        reader = _Reader(flow, output.code, dict(controls), output.unit.scale)
-        found.append(_sheet(reader, f"output {output.name}", setting, output.unit.text, moving))
+        what = Wanted(f"output {output.name}", output.unit.text, output.unit.scale, output.code)
+        found += _in_modes(flow, what, setting, controls, moving)
     return tuple(found)
 
 
-def _per_second(unit: str) -> str:
-    return "1/s" if unit in {"", "1"} else f"{unit}/s"
+def per_second(unit: str) -> str:
+    """The unit of a rate: `m/s`, `(rad/s)/s`."""
+    if unit in {"", "1"}:
+        return "1/s"
+    return f"({unit})/s" if "/" in unit else f"{unit}/s"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is tabulated: the rate of the state of this name, or an output by its code."""
+
+    quantity: str
+    unit: str
+    scale: float
+    what: str | Code
+
+
+def _in_modes(
+    flow: Flow,
+    wanted: Wanted,
+    setting: str,
+    controls: Mapping[str, float],
+    moving: frozenset[str],
+) -> list[Sheet]:
+    """A table for each mode; one for all where the modes do not matter to it."""
+    program = flow.program
+    mode = program.field.mode
+    values = next((s.values for s in program.states if s.name == mode), ())
+    if mode not in _used(program, wanted.what, "", 0):
+        values = ()
+    readers = [
+        _Reader(flow, wanted, {**controls, mode: float(k)}, _used(program, wanted.what, mode, k))
+        for k in range(len(values))
+    ] or [_Reader(flow, wanted, dict(controls), _used(program, wanted.what, "", 0))]
+    ends = [f" in {value}" for value in values] or [""]
+    return [
+        _sheet(reader, f"{wanted.quantity}{end}", setting, moving)
+        for reader, end in zip(readers, ends, strict=True)
+    ]
+
+
+def _used(program: Program, what: str | Code, mode: str, index: int) -> set[str]:
+    """The names that a rate or an output depends on in one mode; an empty mode for all of them."""
+    if isinstance(what, Code):
+        return reads(in_mode(what, mode, index))
+    place = program.field.driven.index(what)
+    used: set[str] = set()
+    inside = {c.name: reads(in_mode(c.code, mode, index)) for c in program.field.coordinates}
+    for term in program.field.terms:
+        coefficient = in_mode(term.coefficient, mode, index)
+        if term.component != place or is_number(coefficient, 0.0):
+            continue
+        used |= reads(coefficient)
+        axes = program.field.tables[term.table].axes if term.table >= 0 else ()
+        used |= {name for axis in axes for name in inside.get(axis.name, {axis.name})}
+    if not program.field.terms and program.field.formula is not None:
+        used |= reads(in_mode(program.field.formula[place], mode, index))
+    return used
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Reader:
-    """A rate (the name of a state) or an output (code) of a flow, in the users' units."""
+    """A quantity of a flow at held values (SI), in the users' units; used: what it depends on."""
 
     flow: Flow
-    what: str | Code
-    controls: dict[str, float]
-    scale: float
+    wanted: Wanted
+    held: dict[str, float]
+    used: set[str]
 
-    def reads(self, moving: frozenset[str]) -> tuple[State | Control, ...]:
+    def axes(self, moving: frozenset[str]) -> tuple[Part, ...]:
         """The states and moving controls that it depends on."""
         program = self.flow.program
-        parts: tuple[State | Control, ...] = (*program.states, *program.controls)
-        used = self._used()
-        return tuple(p for p in parts if p.name in used and (_is_state(p) or p.name in moving))
+        names = {*(s.name for s in program.states if len(s.values) != 1), *moving}
+        parts: tuple[Part, ...] = (*program.states, *program.controls)
+        return tuple(p for p in parts if p.name in (names & self.used) - {program.field.mode})
 
-    def _used(self) -> set[str]:
-        program = self.flow.program
-        if isinstance(self.what, Code):
-            return _names(self.what)
-        place = program.field.driven.index(self.what)
-        used: set[str] = set()
-        inside = {c.name: _names(c.code) for c in program.field.coordinates}
-        for term in program.field.terms:
-            if term.component == place:
-                used |= _names(term.coefficient)
-                table = program.field.tables[term.table] if term.table >= 0 else None
-                for axis in table.axes if table is not None else ():
-                    used |= inside.get(axis.name, {axis.name})
-        if not program.field.terms and program.field.formula is not None:
-            used |= _names(program.field.formula[place])
-        return used
-
-    def at(self, parts: tuple[State | Control, ...], points: Array) -> Array:
+    def at(self, parts: tuple[Part, ...], points: Array) -> Array:
         """The values (N,) at points (N, d), in the units of the parts."""
         program, flow = self.flow.program, self.flow
         register = np.repeat(flow.defaults[np.newaxis], len(points), axis=0)
         names = program.register
-        for name, value in self.controls.items():
-            register[:, names.index(name)] = value
+        for name, value in self.held.items():
+            if name:
+                register[:, names.index(name)] = value
         for k, part in enumerate(parts):
-            register[:, names.index(part.name)] = points[:, k] * part.unit.scale
-        if isinstance(self.what, Code):
-            return np.asarray(evaluate([self.what], names, register)[:, 0] / self.scale)
+            inside = points[:, k] * part.unit.scale
+            # The rounding of a unit may step over the edge of a domain by a last digit.
+            is_range = not _is_discrete(part)
+            register[:, names.index(part.name)] = (
+                np.clip(inside, part.low, part.high) if is_range else points[:, k]
+            )
+        what, scale = self.wanted.what, self.wanted.scale
+        if isinstance(what, Code):
+            return np.asarray(evaluate([what], names, register)[:, 0] / scale)
         n, p = len(program.states), len(program.controls)
         read = next_states if flow.is_map else rates
         found = read(flow, register[:, :n], register[:, n : n + p])
-        return np.asarray(found[:, names.index(self.what)] / self.scale)
+        return np.asarray(found[:, names.index(what)] / scale)
 
 
-def _is_state(part: State | Control) -> bool:
-    return isinstance(part, State)
-
-
-def _names(code: Code) -> set[str]:
-    return {token for token in code.tokens if token not in ARITY}
-
-
-def _is_discrete(part: State | Control) -> bool:
+def _is_discrete(part: Part) -> bool:
     return isinstance(part, State) and part.kind is Kind.DISCRETE
 
 
-def _sheet(
-    reader: _Reader, quantity: str, setting: str, unit: str, moving: frozenset[str]
-) -> Sheet:
-    parts = tuple(p for p in reader.reads(moving) if not _is_discrete(p) or len(_labels(p)) > 1)
-    counts = [len(_labels(p)) if _is_discrete(p) else FIRST for p in parts]
-    nodes, values = _tabulated(reader, parts, counts)
-    while (finer := _finer(parts, counts, values)) is not None:
-        counts = finer
-        nodes, values = _tabulated(reader, parts, counts)
+def _sheet(reader: _Reader, quantity: str, setting: str, moving: frozenset[str]) -> Sheet:
+    parts = reader.axes(moving)
+    nodes: tuple[Array, ...] = tuple(map(_first_nodes, parts))
+    values = _tabulated(reader, parts, nodes)
+    while (finer := _finer(parts, nodes, values)) is not None:
+        nodes, values = finer, _tabulated(reader, parts, finer)
     error, size = _measured(reader, parts, nodes, values)
     names = tuple(part.name for part in parts)
-    return Sheet(quantity, setting, unit, names, nodes, values, error, size)
+    return Sheet(quantity, setting, reader.wanted.unit, names, nodes, values, error, size)
 
 
-def _labels(part: State | Control) -> tuple[str, ...]:
-    return part.values if isinstance(part, State) else ()
+def _first_nodes(part: Part) -> Array:
+    if isinstance(part, State) and part.kind is Kind.DISCRETE:
+        return np.arange(float(len(part.values)))
+    return np.linspace(part.low / part.unit.scale, part.high / part.unit.scale, FIRST)
 
 
-def _tabulated(
-    reader: _Reader, parts: tuple[State | Control, ...], counts: list[int]
-) -> tuple[tuple[Array, ...], Array]:
-    nodes = tuple(
-        np.arange(float(count))
-        if _is_discrete(part)
-        else np.linspace(part.low / part.unit.scale, part.high / part.unit.scale, count)
-        for part, count in zip(parts, counts, strict=True)
-    )
-    # The rounding of a unit may step over the edge of a domain by a last digit.
+def _tabulated(reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...]) -> Array:
     mesh = np.meshgrid(*nodes, indexing="ij") if nodes else []
     points = np.stack([m.ravel() for m in mesh], axis=-1) if nodes else np.zeros((1, 0))
-    return nodes, reader.at(parts, points).reshape(counts)
+    return reader.at(parts, points).reshape([len(own) for own in nodes])
 
 
 def _finer(
-    parts: tuple[State | Control, ...], counts: list[int], values: Array
-) -> list[int] | None:
-    """Twice as many nodes along the axis that bends most; None where it bends too little."""
-    size = float(np.nanmax(np.abs(values), initial=0.0))
+    parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
+) -> tuple[Array, ...] | None:
+    """More nodes where the values bend, along the axis that bends most; None where enough."""
+    allowed = FINE * float(np.nanmax(np.abs(values), initial=0.0)) / max(len(parts), 1)
     bends = [
-        0.0 if _is_discrete(part) else float(np.nanmax(np.abs(np.diff(values, 2, axis=k)))) / 8.0
-        for k, part in enumerate(parts)
+        np.zeros(len(own)) if _is_discrete(part) else _bending(own, values, k)
+        for k, (part, own) in enumerate(zip(parts, nodes, strict=True))
     ]
-    if sum(bends) <= FINE * size or not bends:
-        return None
-    axis = int(np.argmax(bends))
-    finer = [2 * count - 1 if k == axis else count for k, count in enumerate(counts)]
-    return finer if np.prod(finer) <= LARGEST else None
+    for k in sorted(range(len(parts)), key=lambda k: -bends[k].max()):
+        if bends[k].max() <= allowed:
+            return None
+        finer = (*nodes[:k], _split(nodes[k], bends[k] > allowed), *nodes[k + 1 :])
+        if np.prod([len(own) for own in finer]) <= LARGEST:
+            return finer
+    return None
+
+
+def _bending(nodes: Array, values: Array, axis: int) -> Array:
+    """At each inner node (n,) what is lost beside it by going straight: a quarter of its bend."""
+    rows = np.moveaxis(values, axis, 0).reshape(len(nodes), -1)
+    share = ((nodes[1:-1] - nodes[:-2]) / (nodes[2:] - nodes[:-2]))[:, np.newaxis]
+    straight = (1.0 - share) * rows[:-2] + share * rows[2:]
+    off = np.nan_to_num(np.abs(rows[1:-1] - straight), nan=0.0).max(axis=1)
+    return np.concatenate([[0.0], off / 4.0, [0.0]])
+
+
+def _split(nodes: Array, bent: Booleans) -> Array:
+    """The nodes with a new one in the middle of each interval beside a bent one."""
+    wide = np.diff(nodes) > NARROWEST * (nodes[-1] - nodes[0])
+    middles = 0.5 * (nodes[1:] + nodes[:-1])
+    return np.sort(np.concatenate([nodes, middles[(bent[1:] | bent[:-1]) & wide]]))
 
 
 def _measured(
-    reader: _Reader,
-    parts: tuple[State | Control, ...],
-    nodes: tuple[Array, ...],
-    values: Array,
+    reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
 ) -> tuple[float, float]:
     chance = np.random.default_rng(SEED)
     columns = [
