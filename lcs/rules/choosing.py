@@ -28,8 +28,7 @@ def chosen(found: Candidates, seen: Examples, to_cover: Booleans) -> Integers:
     told = to_cover & seen.is_told
     kept = _of_all_levels(found, seen, told)
     for _ in range(ROUNDS):
-        for c in kept:
-            _grow_again(found, int(c), kept, seen, told)
+        _grow_again(found, kept, seen, told)
         fewer = _of_all_levels(found, seen, told)
         if len(fewer) >= len(kept):
             break
@@ -58,18 +57,23 @@ def _held(found: Candidates, those: Integers, seen: Examples, rows: Integers) ->
     return boxes_hold(lower, upper, seen.high, seen.x[rows])
 
 
-def _grow_again(found: Candidates, c: int, kept: Integers, seen: Examples, told: Booleans) -> None:
-    """Add the box that grows from what candidate c alone holds (Espresso's reduce and expand)."""
-    level = found.level[c]
-    same = kept[np.array(found.level)[kept] == level]
-    need = np.flatnonzero(told & (seen.level == level))
-    held = _held(found, same, seen, need)
-    alone = need[held[same == c][0] & (held.sum(axis=0) == 1)]
-    if not alone.size:
-        return
-    lower = seen.x[alone].min(axis=0)
-    upper = np.minimum(np.nextafter(seen.x[alone].max(axis=0), np.inf), seen.high)
-    found.add(*grown_box((lower, upper, level), alone, seen), level)
+def _grow_again(found: Candidates, kept: Integers, seen: Examples, told: Booleans) -> None:
+    """Add the boxes that grow from what each of those kept alone holds.
+
+    Espresso's reduce and expand.
+    """
+    levels = np.array(found.level, np.int64)[kept]
+    for level in np.unique(levels).tolist():
+        same = kept[levels == level]
+        need = np.flatnonzero(told & (seen.level == level))
+        held = _held(found, same, seen, need)
+        is_alone = held.sum(axis=0) == 1
+        for own in held:
+            alone = need[own & is_alone]
+            if alone.size:
+                lower = seen.x[alone].min(axis=0)
+                upper = np.minimum(np.nextafter(seen.x[alone].max(axis=0), np.inf), seen.high)
+                found.add(*grown_box((lower, upper, level), alone, seen), level)
 
 
 def settle(found: Candidates, kept: Integers, seen: Examples, *, few_digits: bool) -> None:
@@ -82,12 +86,15 @@ def settle(found: Candidates, kept: Integers, seen: Examples, *, few_digits: boo
     everywhere = np.arange(len(seen.x))
     rows = everywhere[_held(found, kept, seen, everywhere).any(axis=0)]
     held = _held(found, kept, seen, rows)
+    times = held.sum(axis=0)
     for k, c in enumerate(kept.tolist()):
         for i in range(seen.x.shape[1]):
-            alone = seen.x[rows[held[k] & (held.sum(axis=0) == 1)], i]
+            alone = seen.x[rows[held[k] & (times == 1)], i]
             box = found.lower[c], found.upper[c]
             _settle_interval(box, i, alone, seen, few_digits=few_digits)
+            times -= held[k]
             held[k] = _held(found, kept[k : k + 1], seen, rows)[0]
+            times += held[k]
 
 
 def _settle_interval(
