@@ -128,6 +128,24 @@ class StepsLearner:
         if done:
             self.end_episode()
 
+    def remember(
+        self,
+        places: npt.ArrayLike,
+        actions: Integers,
+        rewards: Array,
+        after: npt.ArrayLike,
+        ends: Booleans,
+    ) -> None:
+        """Remember D steps that somebody else made: places and after (D, n), else (D,).
+
+        Raises:
+            LearnerError: not n finite numbers each.
+        """
+        x, led_to = inputs_of(places, self._n), inputs_of(after, self._n)
+        columns = actions.tolist(), rewards.tolist(), ends.tolist()
+        for k, (action, reward, end) in enumerate(zip(*columns, strict=True)):
+            voting.remember_once(self.land, x[k], action, reward, led_to[k], end, self.chance)
+
     def end_episode(self) -> None:
         """Grow if it is time to; for episodes that are given up, since `learn` calls it else."""
         if self.land.seen[0] >= self.due:

@@ -44,18 +44,18 @@ def _of_world(world: WorldTrack, robots: Sequence[str]) -> Iterator[Quantity]:
     times = world.times
     for place, name in enumerate(world.names):
         x, y, heading = world.poses[:, place].T
-        yield _measured(f"{name}.x", METRES, times, x)
-        yield _measured(f"{name}.y", METRES, times, y)
-        yield _measured(f"{name}.heading", RADIANS, times, wrapped(heading), Kind.PERIODIC)
+        yield measured(f"{name}.x", METRES, times, x)
+        yield measured(f"{name}.y", METRES, times, y)
+        yield measured(f"{name}.heading", RADIANS, times, wrapped(heading), Kind.PERIODIC)
     for place, name in enumerate(robots):
         speed, turn = world.motions[:, place].T
-        yield _measured(f"{name}.speed", Unit("m/s", 1.0), times, speed)
-        yield _measured(f"{name}.turn", Unit("rad/s", 1.0), times, turn)
-        yield _measured(f"{name}.light", Unit("lx", 1.0), times, world.light[:, place])
+        yield measured(f"{name}.speed", Unit("m/s", 1.0), times, speed)
+        yield measured(f"{name}.turn", Unit("rad/s", 1.0), times, turn)
+        yield measured(f"{name}.light", Unit("lx", 1.0), times, world.light[:, place])
         close = world.close_times
-        yield _measured(f"{name}.clearance", METRES, close, world.clearance[:, place])
+        yield measured(f"{name}.clearance", METRES, close, world.clearance[:, place])
         contacts = world.contacts[:, place]
-        yield _measured(f"{name}.contacts", Unit("1", 1.0), close, contacts, Kind.DISCRETE)
+        yield measured(f"{name}.contacts", Unit("1", 1.0), close, contacts, Kind.DISCRETE)
 
 
 def _of_sensors(robot: Robot, track: RobotTrack) -> Iterator[Quantity]:
@@ -63,7 +63,7 @@ def _of_sensors(robot: Robot, track: RobotTrack) -> Iterator[Quantity]:
     for sensor, said in zip(robot.body.sensors, track.sensors, strict=True):
         for column in range(len(sensor.readings)):
             signal = robot.architecture.board[place]
-            yield _of_board(robot.name, signal, said.times, said.readings[:, column])
+            yield of_board(robot.name, signal, said.times, said.readings[:, column])
             place += 1
 
 
@@ -72,12 +72,12 @@ def _of_nodes(robot: Robot, track: RobotTrack, end: float) -> Iterator[Quantity]
     for node, ticks in zip(robot.architecture.nodes, track.nodes, strict=True):
         for column, place in enumerate(node.outputs):
             times, values = _in_effect(ticks, column, node, board[place], end)
-            yield _of_board(robot.name, board[place], times, values)
+            yield of_board(robot.name, board[place], times, values)
         for column, state in enumerate(
             programs[node.behavior].states if node.behavior >= 0 else ()
         ):
             name = f"{robot.name}.{node.name}.{state.name}"
-            yield _of_state(name, state, ticks.times, _column(ticks, ticks.register, column))
+            yield of_state(name, state, ticks.times, _column(ticks, ticks.register, column))
 
 
 def _in_effect(
@@ -92,11 +92,13 @@ def _in_effect(
     return np.append(0.0, times), np.append(signal.unsaid, values)
 
 
-def _of_board(robot: str, signal: Signal, times: Array, values: Array) -> Quantity:
+def of_board(robot: str, signal: Signal, times: Array, values: Array) -> Quantity:
+    """A signal of a robot's board."""
     return _held(f"{robot}.{signal.name}", signal, times, values)
 
 
-def _of_state(name: str, state: State, times: Array, values: Array) -> Quantity:
+def of_state(name: str, state: State, times: Array, values: Array) -> Quantity:
+    """A state of a node."""
     turns = state.kind is Kind.PERIODIC
     return _held(name, state, times, wrapped(values, state.low, state.high) if turns else values)
 
@@ -120,9 +122,10 @@ def _column(ticks: NodeTrack, values: Array, column: int) -> Array:
     return values[:, column] if ticks.times.size else np.zeros(0)
 
 
-def _measured(
+def measured(
     name: str, unit: Unit, times: Array, values: Array, kind: Kind = Kind.CONTINUOUS
 ) -> Quantity:
+    """A quantity of the world, known at some times."""
     turns = kind is Kind.PERIODIC
     low, high = (-math.pi, math.pi) if turns else (-math.inf, math.inf)
     return Quantity(name, unit, kind, (), low, high, kind is Kind.DISCRETE, times, values)

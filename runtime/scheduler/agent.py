@@ -46,7 +46,7 @@ class Agent:
         robot = scenario.robots[place]
         architecture = robot.architecture
         self._place, self._observer = place, observer
-        self._is_observed = not isinstance(observer, Silent)
+        self._is_observed = type(observer) is not Silent
         self._architecture = architecture
         self.board = Board(architecture, robot.body.sensors)
         self.nodes = [

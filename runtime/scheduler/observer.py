@@ -99,9 +99,8 @@ class Observer(Protocol):
         ...
 
 
-@final
 class Silent:
-    """An observer that keeps nothing."""
+    """An observer that keeps nothing; those that keep little are made from it."""
 
     def sensed(self, instant: int, delivery: Delivery) -> None:
         """Do nothing."""

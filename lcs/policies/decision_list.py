@@ -1,0 +1,69 @@
+"""A decision list: boxes in an order; the first that holds says what is done (Rivest 1987)."""
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+import numpy.typing as npt
+
+from lcs.arrays import Array, Booleans, Integers
+from lcs.given import inputs_of
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class DecisionList:
+    """R rules for n inputs, and the action `otherwise`, where none of them holds.
+
+    action (R,). lower, upper (R, n): a rule holds where lower <= x < upper in each input; bounds
+    are infinite where nothing is asked. right, wrong (R,): of the examples that it was the first
+    to hold on, how often its action was as good as the best, and how often it was not.
+    """
+
+    action: Integers
+    lower: Array
+    upper: Array
+    right: Integers
+    wrong: Integers
+    otherwise: int
+
+    def __len__(self) -> int:
+        """How many rules, `otherwise` not among them."""
+        return len(self.action)
+
+    def decide(self, inputs: npt.ArrayLike) -> Integers:
+        """The action at each of the inputs (T, n), as (T,).
+
+        Raises:
+            LearnerError: not n finite numbers each.
+        """
+        first = self.first(inputs)
+        actions = np.append(self.action, self.otherwise)
+        taken: Integers = actions[first]
+        return taken
+
+    def first(self, inputs: npt.ArrayLike) -> Integers:
+        """Which rule is the first to hold at inputs (T, n), as (T,); R where none does.
+
+        Raises:
+            LearnerError: not n finite numbers each.
+        """
+        x = inputs_of(inputs, self.lower.shape[1])
+        held = np.ones((len(self) + 1, len(x)), np.bool_)
+        held[: len(self)] = holds(self.lower, self.upper, x)
+        found: Integers = held.argmax(axis=0)
+        return found
+
+
+def always(action: int, inputs: int) -> DecisionList:
+    """The list without rules."""
+    none, no_bounds = np.zeros(0, np.int64), np.zeros((0, inputs))
+    return DecisionList(none, no_bounds, no_bounds, none, none, action)
+
+
+def holds(lower: Array, upper: Array, x: Array) -> Booleans:
+    """Which boxes (R, n) hold which inputs (T, n), as (R, T)."""
+    inside = np.ones((len(lower), len(x)), np.bool_)
+    for i in range(x.shape[1]):
+        inside &= (x[:, i] >= lower[:, i, None]) & (x[:, i] < upper[:, i, None])
+    return inside

@@ -1,0 +1,119 @@
+"""A policy from what was lived: what actions are worth, rules for the best ones, few of them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, TypeAlias, final
+
+import numpy as np
+import numpy.typing as npt
+
+from lcs.alcsr.config import GROWN
+from lcs.alcsr.learner import ALCSR
+from lcs.arrays import Array, Integers
+from lcs.policies.decision_list import DecisionList
+from lcs.policies.listing import Offer, listed
+from lcs.policies.steps import Steps
+from lcs.policies.worth import worth_of
+from lcs.rules.deciding import decide
+from lcs.rules.table import RuleTable
+from lcs.xcsr.learner import XCSR
+
+GOOD: Final = 1_000.0
+WORSE: Final = 0.0
+"""What a learner is rewarded with for an action that is as good as the best, and for another."""
+EQUAL: Final = 0.1
+"""An action is as good as the best where it loses no more than this share of what is at stake.
+
+At stake is the difference of the best and the worst action, in the middle of all places.
+"""
+MOST_RULES: Final = 12
+
+Making: TypeAlias = Callable[[int, Array, Array, int], ALCSR | XCSR]
+"""From the number of actions, the lowest and the highest inputs (n,), and a seed."""
+
+
+def _alcsr(actions: int, low: Array, high: Array, seed: int) -> ALCSR:
+    n = len(low)
+    return ALCSR(actions, n, GROWN, reward_range=GOOD, low=low, high=high, seed=seed)
+
+
+def _xcsr(actions: int, low: Array, high: Array, seed: int) -> XCSR:
+    return XCSR(actions, len(low), low=low, high=high, seed=seed)
+
+
+LEARNERS: Final[dict[str, Making]] = {"alcsr": _alcsr, "xcsr": _xcsr}
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Voting:
+    """The policy of all rules of a table, by their vote; `otherwise` where it knows nothing."""
+
+    table: RuleTable
+    otherwise: int
+
+    def decide(self, inputs: npt.ArrayLike) -> Integers:
+        """The actions (T,) at inputs (T, n)."""
+        best = decide(self.table, inputs).best
+        return np.where(best < 0, self.otherwise, best)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Found:
+    """Few rules, and all those that they were chosen from.
+
+    loses: what the few lose a decision against the best action at each place, by what actions are
+    worth; at_stake: what the best action loses less than the worst, in the middle of all places.
+    """
+
+    rules: DecisionList
+    votes: Voting
+    loses: float
+    at_stake: float
+
+
+def found_policy(
+    lived: Steps,
+    ranges: tuple[Array, Array],
+    actions: int,
+    *,
+    discount: float,
+    learner: str,
+    seed: int,
+    most: int = MOST_RULES,
+) -> Found:
+    """What a learner makes of what was lived; the same for the same steps and seed.
+
+    Args:
+        lived: all steps of all episodes.
+        ranges: the lowest and the highest inputs, (n,) each.
+        actions: how many there are.
+        discount: what a reward is worth one step later.
+        learner: one of `LEARNERS`.
+        seed: of all chance.
+        most: rules.
+
+    Raises:
+        LearnerError: something is not finite, or out of range.
+    """
+    worth = worth_of(lived, actions, discount, seed)
+    cost = worth.max(axis=1, keepdims=True) - worth
+    at_stake = float(np.median(cost.max(axis=1)))
+    tolerance = EQUAL * at_stake
+    x = np.clip(lived.x, *ranges)
+    order = np.random.default_rng([seed, len(x)]).permutation(len(x))
+    made = LEARNERS[learner](actions, *ranges, seed)
+    made.teach(x[order], np.where(cost <= tolerance, GOOD, WORSE)[order])
+    table = made.rules()
+    rules = listed(offer_of(table), x, cost, tolerance=tolerance, most=most)
+    loses = float(cost[np.arange(len(x)), rules.decide(x)].mean())
+    return Found(rules, Voting(table, rules.otherwise), loses, at_stake)
+
+
+def offer_of(table: RuleTable) -> Offer:
+    """The rules that say that their action is good."""
+    good = table.prediction > 0.5 * (GOOD + WORSE)
+    lower = np.where(table.lower > table.low, table.lower, -np.inf)[good]
+    upper = np.where(table.upper < table.high, table.upper, np.inf)[good]
+    return Offer(table.action[good], lower, upper)

@@ -1,0 +1,181 @@
+"""One episode: a run with an exploring arbiter in it, until it is over, and what it was worth."""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from lcs.policies.policy import Policy
+from lcs.policies.steps import Steps
+from runtime.arbiter import Arbiter
+from runtime.arrays import Array, Integers
+from runtime.recording.live import LastTicks, Live
+from runtime.scenario import Scenario
+from runtime.scheduler.nodes import Learner
+from runtime.scheduler.scheduler import Scheduler
+from runtime.start import started
+from runtime.training import How, Training
+from specc.training.exploring import Exploring
+from specc.training.rewards import ended_at, rewards_of
+from verifier.architectures.required import results_on
+from verifier.report.requirement_results import Outcome, RequirementResult
+
+TRIES: Final = 1
+"""What sets the chance of tries apart from all else that follows from a seed."""
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Task:
+    """An episode to live: the world's seed, what decides, and how much it explores."""
+
+    world: int
+    policy: Policy
+    explore: float
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Episode:
+    """What came of an episode.
+
+    total: the sum of its rewards. seconds: how long it lasted. outcomes: of what the scenario
+    requires, as far as it went.
+    """
+
+    steps: Steps
+    total: float
+    seconds: float
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether all that is required is satisfied."""
+        return all(outcome is Outcome.SATISFIED for outcome in self.outcomes)
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class _Course:
+    """How it went: rows (T, q) of quantities, one after each step of the world.
+
+    decided (D + 1,): the row that each decision was made at, and the row where the last one's
+    reward is due. ends: whether the episode ended with that.
+    """
+
+    rows: Array
+    decided: Integers
+    ends: bool
+
+
+def lived(scenario: Scenario, task: Task) -> Episode:
+    """Live one episode of a scenario that trains; it ends where that says so, or with the run.
+
+    Raises:
+        NoRoomError: there is no room for what is placed at random.
+        UserCodeError: the scenario needs Python of the user's own.
+    """
+    training = training_of(scenario)
+    scenario = dataclasses.replace(scenario, seed=task.world)
+    exploring = Exploring(
+        task.policy,
+        len(trained_arbiter(scenario).choices),
+        task.explore,
+        np.random.default_rng([task.world, TRIES]),
+    )
+    ticks = LastTicks()
+    learners = {training.arbiter: Learner(exploring, _nothing)}
+    begun = started(scenario, learners=learners, observer=ticks)
+    demands = [each.requirement for each in training.measures if each.requirement is not None]
+    required = (*scenario.requirements, *demands)
+    names = (*training.quantities, *(name for one in required for name in one.quantities))
+    live = Live([*dict.fromkeys(names)], scenario, begun, ticks)
+    course = _course(training, scenario, begun.scheduler, live, exploring)
+    times = np.arange(1.0, len(course.rows) + 1.0) * scenario.step
+    results = results_on(required, live.sampled(times, course.rows), float(times[-1]))
+    own = len(scenario.requirements)
+    rewards = rewards_of(training, course.rows, course.decided, _robustness(results[own:]))
+    return Episode(
+        steps=_steps(exploring, rewards, ends=course.ends),
+        total=float(rewards.sum()),
+        seconds=float(times[-1]),
+        outcomes=tuple(result.outcome for result in results[:own]),
+    )
+
+
+def training_of(scenario: Scenario) -> Training:
+    """What is trained in it.
+
+    Raises:
+        ValueError: nothing is.
+    """
+    if scenario.training is None:
+        raise ValueError(f"'{scenario.name}' trains nothing")
+    return scenario.training
+
+
+def trained_arbiter(scenario: Scenario) -> Arbiter:
+    """The arbiter that is trained, as it was before."""
+    training = training_of(scenario)
+    robot = next(robot for robot in scenario.robots if robot.name == training.robot)
+    node = next(node for node in robot.architecture.nodes if node.name == training.node)
+    return robot.architecture.arbiters[node.arbiter]
+
+
+def _course(
+    training: Training,
+    scenario: Scenario,
+    scheduler: Scheduler,
+    live: Live,
+    exploring: Exploring,
+) -> _Course:
+    """Run until it is over; whether it is, is asked at each decision."""
+    rows: list[list[float]] = []
+    decided: list[int] = []
+    for instant in range(max(round(scenario.duration / scenario.step), 1)):
+        scheduler.step()
+        rows.append(live.now())
+        if len(exploring.choices) > len(decided):
+            over = _over(training, rows, decided, instant)
+            if over >= 0:
+                return _Course(np.array(rows[: over + 1]), np.array([*decided, over]), ends=True)
+            decided.append(max(instant - 1, 0))
+    over = _over(training, rows, decided, len(rows))
+    if over >= 0:
+        return _Course(np.array(rows[: over + 1]), np.array([*decided, over]), ends=True)
+    if any(measure.how is How.ROBUSTNESS for measure in training.measures):
+        return _Course(np.array(rows), np.array([*decided, len(rows) - 1]), ends=True)
+    return _Course(np.array(rows), np.array(decided), ends=False)
+
+
+def _over(
+    training: Training, rows: Sequence[Sequence[float]], decided: Sequence[int], end: int
+) -> int:
+    """The first row after the last decision, before `end`, at which the episode is over, or -1."""
+    since = decided[-1] + 1 if decided else 0
+    count = len(training.quantities)
+    found = ended_at(training, np.array([row[:count] for row in rows[since:end]]))
+    return found + since if found >= 0 else -1
+
+
+def _steps(exploring: Exploring, rewards: Array, *, ends: bool) -> Steps:
+    """The decisions whose rewards are known; what the last one led to is not, where it ended."""
+    count = len(rewards)
+    reads = np.array(exploring.reads)
+    after = reads[1 : count + 1]
+    if len(after) < count:
+        after = np.concatenate([after, reads[-1:]])
+    last = np.zeros(count, np.bool_)
+    last[-1:] = ends
+    return Steps(reads[:count], np.array(exploring.choices[:count]), rewards, after, last)
+
+
+def _robustness(results: Sequence[RequirementResult]) -> Mapping[str, float]:
+    return {result.text: result.robustness for result in results}
+
+
+def _nothing() -> float:
+    """Rewards are worked out after the run."""
+    return 0.0

@@ -1,0 +1,55 @@
+"""An arbiter that does what a policy says, and now and then tries something else for a while."""
+
+from typing import final
+
+import numpy as np
+
+from lcs.policies.policy import Policy
+from runtime.arrays import Array
+
+LONGEST_TRY = 8
+"""Decisions for which one choice is tried, at most: one alone would hardly show anywhere."""
+
+
+@final
+class Exploring:
+    """Decides by a policy, or by chance, and keeps what it read and chose.
+
+    explore: the share of decisions at which, were it not for tries that go on, a try begins.
+    chance: of its tries.
+
+    Attributes:
+        reads: (m,) at each decision so far.
+        choices: at each of them.
+    """
+
+    def __init__(
+        self, policy: Policy, choices: int, explore: float, chance: np.random.Generator
+    ) -> None:
+        self._policy, self._count, self._explore, self._chance = policy, choices, explore, chance
+        self._left, self._tried = 0, 0
+        self.reads: list[Array] = []
+        self.choices: list[int] = []
+
+    def reset(self, seed: int) -> None:
+        """Do nothing: it lives for one run, and its chance was given to it."""
+
+    def decide(self, reads: Array, time: float) -> Array:  # noqa: ARG002  # the policy has no clock
+        """1 for the choice."""
+        x = np.array(reads)
+        if self._left == 0 and self._chance.random() < self._explore:
+            self._left = 1 + int(self._chance.integers(LONGEST_TRY))
+            self._tried = int(self._chance.integers(self._count))
+        if self._left > 0:
+            self._left -= 1
+            choice = self._tried
+        else:
+            choice = int(self._policy.decide(x[np.newaxis])[0])
+        self.reads.append(x)
+        self.choices.append(choice)
+        numbers = np.zeros(self._count)
+        numbers[choice] = 1.0
+        return numbers
+
+    def learn(self, reward: float) -> None:
+        """Do nothing: rewards are worked out after the run."""

@@ -1,0 +1,70 @@
+"""Episodes over processes: in the same order, and the same, however many there are."""
+
+import signal
+import tempfile
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+from typing import Self, final
+
+from runtime.scenario import Scenario
+from runtime.scenario_artifact import from_bytes, to_bytes
+from specc.training.episode import Episode, Task, lived
+
+
+@final
+class Workers:
+    """Lives episodes of one scenario; a context, at whose end its processes are gone.
+
+    Args:
+        scenario: one that trains.
+        processes: how many; with 1 it is done here.
+    """
+
+    def __init__(self, scenario: Scenario, processes: int) -> None:
+        self._scenario, self._processes = scenario, processes
+        self._open = ExitStack()
+        self._pool: ProcessPoolExecutor | None = None
+        self._file = Path()
+
+    def __enter__(self) -> Self:
+        if self._processes > 1:
+            folder = self._open.enter_context(tempfile.TemporaryDirectory(prefix="specc-"))
+            self._file = Path(folder) / "scenario.specc"
+            self._file.write_bytes(to_bytes(self._scenario))
+            pool = ProcessPoolExecutor(self._processes, initializer=_leave_interrupts)
+            self._pool = self._open.enter_context(pool)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._pool is not None and error is not None:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+        self._open.close()
+
+    def lived(self, tasks: Sequence[Task]) -> Iterator[Episode]:
+        """What came of each, in their order, as soon as it is known."""
+        if self._pool is None:
+            return (lived(self._scenario, task) for task in tasks)
+        return self._pool.map(_lived_there, [self._file] * len(tasks), tasks)
+
+
+def _lived_there(file: Path, task: Task) -> Episode:
+    return lived(_scenario_in(file), task)
+
+
+@cache
+def _scenario_in(file: Path) -> Scenario:
+    return from_bytes(file.read_bytes())
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C is for the process that waits for this one."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
