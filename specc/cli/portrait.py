@@ -5,7 +5,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from specc.cli.console import print_json, print_text, progress_bar, say
+from specc.cli.console import print_json, print_text, progress_bar, say, show_diagnostics
 from specc.cli.options import Format, FormatOption, SpecPath, assignments, names_of, one_assignment
 from specc.cli.warming import warmed
 from specc.figures.style_names import Style
@@ -16,7 +16,12 @@ Output: TypeAlias = Annotated[
 ]
 Axes: TypeAlias = Annotated[
     str | None,
-    typer.Option("--axes", "-a", metavar="X,Y", help="One to three states; default the first two."),
+    typer.Option(
+        "--axes",
+        "-a",
+        metavar="X,Y",
+        help="One to three states, default the first two; of an arbiter one or two of its reads.",
+    ),
 ]
 Held: TypeAlias = Annotated[
     list[str],
@@ -70,6 +75,9 @@ def portrait(
     States that are not drawn are held at `hold`, controls at their defaults; `--at` says else.
     Three axes give a view of the solid.
 
+    Of an arbiter it draws which choice holds where, over two of what it reads: by default those
+    that matter most. What else it reads is held in the middle of its domain.
+
     **Examples**
 
     `specc portrait specs/van_der_pol.yaml -o vdp.svg --at mu=2`
@@ -79,16 +87,23 @@ def portrait(
     `specc portrait specs/van_der_pol.yaml --against mu -o bifurcations.svg`
 
     `specc portrait specs/wall_follow.yaml --axes distance,heading --format json`
+
+    `specc portrait specs/arbiters/who_goes.yaml --axes ahead,left --at goal=1 -o who_goes.svg`
     """
     from specc import loading, portraying
     from specc.files import require_suffix
     from specc.texts.portrait import record, summary
 
     require_suffix(output, ".svg", ".png", ".pdf", ".json")
-    warmed(spec)
-    program = loading.load_program(spec)
     names = names_of(axes)
     held = assignments(settings)
+    if loading.kind_of(spec) == "arbiter":
+        if against is not None or (sweep and slices):
+            raise typer.BadParameter("of an arbiter take one of --sweep and --slices")
+        _of_arbiter(spec, names, held, sweep or slices, output, style, form)
+        return
+    warmed(spec)
+    program = loading.load_program(spec)
     found: portraying.Found
     match sweep or slices, against:
         case None, None:
@@ -112,5 +127,38 @@ def portrait(
         from specc.drawn import draw
 
         path = output or Path(f"{program.name}.svg")
+        draw(found, path, style)
+        say(f"wrote {path}", "bold")
+
+
+def _of_arbiter(
+    spec: Path,
+    names: tuple[str, ...] | None,
+    held: dict[str, str],
+    swept: str | None,
+    output: Path | None,
+    style: Style,
+    form: Format,
+) -> None:
+    """What an arbiter decides where."""
+    from compiler.architecture.arbiters import compile_arbiter
+    from specc.portraying_arbiters import FoundOfArbiter, arbiter_portrait, arbiter_sweep
+    from specc.texts.arbiter_portraits import record_of_arbiter, summary_of_arbiter
+
+    compiled = compile_arbiter(spec)
+    show_diagnostics(compiled.warnings)
+    found: FoundOfArbiter
+    if swept is None:
+        found = arbiter_portrait(compiled.arbiter, names, held)
+    else:
+        found = arbiter_sweep(compiled.arbiter, *one_assignment(swept), names, held)
+    if form is Format.JSON:
+        print_json(record_of_arbiter(found))
+    else:
+        print_text(summary_of_arbiter(found))
+    if output is not None or form is Format.TEXT:
+        from specc.drawn import draw
+
+        path = output or Path(f"{compiled.arbiter.name}.svg")
         draw(found, path, style)
         say(f"wrote {path}", "bold")

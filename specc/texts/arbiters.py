@@ -12,7 +12,6 @@ from verifier.deciding.conditions import ALWAYS, Values
 from verifier.deciding.reading import NOTHING_SET, ReadRule, read_rules
 from verifier.report.wording import exact, seconds, suffix
 
-FIRST: Final = "by rules: the first that holds decides"
 LAYERS: Final = (
     "by layers, the highest first: on each channel the highest acts that holds and uses it"
 )
@@ -47,11 +46,17 @@ def rule_sentences(arbiter: Arbiter, set_to: Values = NOTHING_SET) -> tuple[Rule
     return tuple(_rule(arbiter, each, speech) for each in read_rules(arbiter, set_to))
 
 
+def word_of(arbiter: Arbiter) -> str:
+    """What its rules are called: those of a subsumption are layers."""
+    return "layer" if arbiter.paradigm is Paradigm.SUBSUMPTION else "rule"
+
+
 def way_of(arbiter: Arbiter) -> str:
     """How it decides, as the end of a sentence that begins with its name: `decides ...`."""
     match arbiter.paradigm:
         case Paradigm.RULES:
-            return FIRST
+            by = f"by rules that {arbiter.learner} learnt" if arbiter.learner else "by rules"
+            return f"{by}: the first that holds decides"
         case Paradigm.SUBSUMPTION:
             return LAYERS
         case Paradigm.WEIGHTS:
@@ -72,8 +77,7 @@ def arbiter_sentences(arbiter: Arbiter, set_to: Values = NOTHING_SET) -> tuple[s
     """
     rules = rule_sentences(arbiter, set_to)
     if rules:
-        word = "rule" if arbiter.paradigm is Paradigm.RULES else "layer"
-        told = [f"{word} {each.number}: {each.sentence}" for each in by_choice(rules)]
+        told = [f"{word_of(arbiter)} {each.number}: {each.sentence}" for each in by_choice(rules)]
         return (*told, *_never(arbiter, rules))
     match arbiter.paradigm:
         case Paradigm.WEIGHTS:

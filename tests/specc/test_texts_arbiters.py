@@ -36,14 +36,13 @@ def test_a_rule_is_a_sentence_in_the_units_of_what_it_reads(tmp_path: Path) -> N
     arbiter = tried(
         tmp_path,
         "choose: avoid, when: ahead < near and lamp == 'shown'",
-        "choose: dock, when: 'ahead >= near and ahead <= far and used > 0.2 and door != \"shut\"'",
+        "choose: dock, when: 'ahead >= near and ahead <= far and door != \"shut\"'",
         "choose: look",
     )
 
     assert arbiter_sentences(arbiter) == (
         "rule 1: avoid, where ahead < near (30 cm) and lamp is shown",
-        "rule 2: dock, where near (30 cm) <= ahead <= far (1.1 m) and used > 0.2 and "
-        "door is not shut",
+        "rule 2: dock, where near (30 cm) <= ahead <= far (1.1 m) and door is not shut",
         "rule 3: look, otherwise",
     )
 
