@@ -68,8 +68,8 @@ class Ours:
         return len(self.learner.rules())
 
 
-def alcsr(config: OfALCSR, how: str = "run") -> "Maker":
-    return lambda seed: Ours(ALCSR(2, 6, replace(config, explore=1.0), seed=seed), how)
+def alcsr(config: OfALCSR, how: str = "run", inputs: int = 6) -> "Maker":
+    return lambda seed: Ours(ALCSR(2, inputs, replace(config, explore=1.0), seed=seed), how)
 
 
 def xcsr(config: Config, how: str = "run") -> "Maker":
