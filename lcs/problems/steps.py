@@ -6,10 +6,11 @@ from typing import Final, Protocol, final
 import numpy as np
 
 from lcs.arrays import Array
+from lcs.inputs import Input
 from lcs.problems.kernels import plane
 from lcs.problems.kernels.plane import Square
 
-MOVES: Final = ("right", "up", "left", "down")
+MOVES: Final = ("move right", "move up", "move left", "move down")
 STEP: Final = 0.05
 """How far an action moves, in both worlds here."""
 GOAL: Final = 1.9
@@ -62,6 +63,16 @@ class Plane:
         """The coordinates x and y."""
         return 2
 
+    @property
+    def described(self) -> tuple[Input, ...]:
+        """What the coordinates are called, and their range."""
+        return tuple(Input(name, low=0.0, high=1.0) for name in ("x", "y"))
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What each action is called."""
+        return MOVES
+
     def reset(self, chance: np.random.Generator) -> Array:
         """A place that is no goal, uniform (2,)."""
         x = np.zeros(2)
@@ -89,7 +100,7 @@ def puddle_world(noise: float = NOISE) -> Plane:
     -1 a step, also of the last, and -400 for each unit of depth in a puddle at the place that is
     reached; where puddles overlap the deeper counts.
     """
-    return Plane("puddle_world", _square(noise, -1.0, -1.0, PUDDLES))
+    return Plane("puddles", _square(noise, -1.0, -1.0, PUDDLES))
 
 
 def _square(

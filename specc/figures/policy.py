@@ -11,50 +11,57 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyBboxPatch, Patch, Polygon, Rectangle
 
 from lcs.arrays import Array, Integers
-from lcs.problems.steps import MOVES, Plane
+from lcs.problems.steps import Plane
 from lcs.steps.learner import StepsLearner
-from specc.figures.style import BLUE, FAINT, INK, PAPER, SKY, VERMILION, bare, framed, look
+from specc.figures.palettes import PALETTES, Palette
+from specc.figures.style import bare, framed, look
+from specc.figures.style_names import Style
 
 FINE: Final = 200
 """Places along each side whose action is drawn."""
 ARROWS: Final = 16
 """Arrows along each side."""
-TINTS: Final = ("#cfe3f2", "#d9eed9", "#f7dcc4", "#ecdcec")
-"""Right, up, left, down; the arrows say it too."""
-WORTH: Final = LinearSegmentedColormap.from_list("worth", ["#2b3a55", SKY, "#f4f7fa"])
 STARTS: Final = ((0.05, 0.05), (0.08, 0.62), (0.30, 0.62), (0.25, 0.90), (0.90, 0.05))
 LONGEST: Final = 120
 
 
-def draw_policy(learner: StepsLearner, world: Plane, chance: np.random.Generator) -> Figure:
+def draw_policy(
+    learner: StepsLearner,
+    world: Plane,
+    chance: np.random.Generator,
+    *,
+    style: Style = Style.SCREEN,
+) -> Figure:
     """The best action everywhere with some ways that it leads, and the worth with its boxes."""
+    palette = PALETTES[style]
     centres = (np.arange(FINE) + 0.5) / FINE
     x, y = np.meshgrid(centres, centres)
     actions, worth = learner.decide(np.column_stack((x.ravel(), y.ravel())))
-    with look():
-        figure = Figure(figsize=(10.0, 4.8))
+    with look(palette):
+        figure = Figure(figsize=(10.0, 4.8), facecolor=palette.paper)
         grid = framed(figure, 1, 2, (0.6, 0.55, 0.55, 0.75))
         grid.update(wspace=0.24)
         does, expects = (figure.add_subplot(grid[k]) for k in range(2))
-        _draw_actions(does, actions.reshape(FINE, FINE), learner)
-        _draw_ways(does, learner, world, chance)
-        _draw_worth(expects, worth.max(axis=1).reshape(FINE, FINE), learner)
+        _draw_actions(does, actions.reshape(FINE, FINE), learner, palette)
+        _draw_ways(does, learner, world, chance, palette)
+        _draw_worth(expects, worth.max(axis=1).reshape(FINE, FINE), learner, palette)
         for axes, title in ((does, "Best action"), (expects, "Expected return, discounted")):
-            _draw_square(axes, world)
+            _draw_square(axes, world, palette)
             axes.set_title(title, loc="left", pad=8.0)
-        entries = _legend(world, np.unique(actions), len(learner.bodies.first) - 1)
+        entries = _legend(world, np.unique(actions), len(learner.bodies.first) - 1, palette)
         figure.legend(handles=entries, loc="upper left", ncols=len(entries), columnspacing=1.4)
     return figure
 
 
-def _draw_actions(axes: Axes, actions: Integers, learner: StepsLearner) -> None:
+def _draw_actions(axes: Axes, actions: Integers, learner: StepsLearner, palette: Palette) -> None:
+    tints = palette.tints[: learner.actions]
     axes.imshow(
         actions,
         origin="lower",
         extent=(0.0, 1.0, 0.0, 1.0),
-        cmap=ListedColormap(TINTS),
+        cmap=ListedColormap(tints),
         vmin=-0.5,
-        vmax=len(TINTS) - 0.5,
+        vmax=len(tints) - 0.5,
         interpolation="nearest",
     )
     ticks = (np.arange(ARROWS) + 0.5) / ARROWS
@@ -67,7 +74,7 @@ def _draw_actions(axes: Axes, actions: Integers, learner: StepsLearner) -> None:
         y[is_open],
         *toward.T,
         pivot="mid",
-        color=FAINT,
+        color=palette.faint,
         scale=34.0,
         width=0.0035,
         headwidth=4.5,
@@ -75,12 +82,17 @@ def _draw_actions(axes: Axes, actions: Integers, learner: StepsLearner) -> None:
 
 
 def _draw_ways(
-    axes: Axes, learner: StepsLearner, world: Plane, chance: np.random.Generator
+    axes: Axes,
+    learner: StepsLearner,
+    world: Plane,
+    chance: np.random.Generator,
+    palette: Palette,
 ) -> None:
     for start in STARTS:
         way = _way(learner, world, np.array(start), chance)
-        axes.plot(*way.T, color=VERMILION, linewidth=1.3, marker=".", markersize=3.0, zorder=4)
-        axes.plot(*way[0], color=VERMILION, marker="o", markersize=6.0, mec=PAPER, zorder=5)
+        color = palette.cycle
+        axes.plot(*way.T, color=color, linewidth=1.3, marker=".", markersize=3.0, zorder=4)
+        axes.plot(*way[0], color=color, marker="o", markersize=6.0, mec=palette.paper, zorder=5)
 
 
 def _way(learner: StepsLearner, world: Plane, x: Array, chance: np.random.Generator) -> Array:
@@ -95,9 +107,11 @@ def _way(learner: StepsLearner, world: Plane, x: Array, chance: np.random.Genera
     return np.array(way)
 
 
-def _draw_worth(axes: Axes, worth: Array, learner: StepsLearner) -> None:
+def _draw_worth(axes: Axes, worth: Array, learner: StepsLearner, palette: Palette) -> None:
+    """The less is expected, the further from the paper's color; so edges of boxes are seen."""
+    colors = LinearSegmentedColormap.from_list("worth", [palette.nullcline, palette.paper])
     drawn = axes.imshow(
-        worth, origin="lower", extent=(0.0, 1.0, 0.0, 1.0), cmap=WORTH, interpolation="nearest"
+        worth, origin="lower", extent=(0.0, 1.0, 0.0, 1.0), cmap=colors, interpolation="nearest"
     )
     bar = axes.figure.colorbar(drawn, ax=axes, fraction=0.046, pad=0.03)
     bar.outline.set_visible(False)
@@ -105,13 +119,17 @@ def _draw_worth(axes: Axes, worth: Array, learner: StepsLearner) -> None:
     first, last = next(pairwise(bodies.first))
     lower, upper = np.clip(bodies.lower[first:last], 0, 1), np.clip(bodies.upper[first:last], 0, 1)
     for low, high in zip(lower, upper, strict=True):
-        axes.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor=INK, linewidth=0.25))
+        axes.add_patch(
+            Rectangle(low, *(high - low), fill=False, edgecolor=palette.ink, linewidth=0.25)
+        )
 
 
-def _draw_square(axes: Axes, world: Plane) -> None:
+def _draw_square(axes: Axes, world: Plane, palette: Palette) -> None:
     square = world.square
     corner = [(1.0, square.goal - 1.0), (1.0, 1.0), (square.goal - 1.0, 1.0)]
-    axes.add_patch(Polygon(corner, facecolor=PAPER, edgecolor=INK, hatch="////", zorder=3))
+    axes.add_patch(
+        Polygon(corner, facecolor=palette.paper, edgecolor=palette.ink, hatch="////", zorder=3)
+    )
     for a, b in square.puddles:
         (x, y), (wide, high) = np.minimum(a, b), np.abs(b - a)
         axes.add_patch(
@@ -121,7 +139,7 @@ def _draw_square(axes: Axes, world: Plane) -> None:
                 high,
                 boxstyle=f"round,pad={square.radius}",
                 fill=False,
-                edgecolor=BLUE,
+                edgecolor=palette.stable,
                 linewidth=1.4,
                 zorder=3,
             )
@@ -134,14 +152,21 @@ def _draw_square(axes: Axes, world: Plane) -> None:
     bare(axes)
 
 
-def _legend(world: Plane, taken: Integers, families: int) -> list[Patch | Line2D]:
+def _legend(world: Plane, taken: Integers, families: int, palette: Palette) -> list[Patch | Line2D]:
+    paper, ink = palette.paper, palette.ink
     entries: list[Patch | Line2D] = [
-        Patch(facecolor=TINTS[a], edgecolor=FAINT, linewidth=0.5, label=MOVES[a]) for a in taken
+        Patch(
+            facecolor=palette.tints[a],
+            edgecolor=palette.faint,
+            linewidth=0.5,
+            label=world.labels[a],
+        )
+        for a in taken
     ]
-    entries.append(Line2D([], [], color=VERMILION, marker=".", label="ways it leads"))
-    entries.append(Patch(facecolor=PAPER, edgecolor=INK, hatch="////", label="goal"))
+    entries.append(Line2D([], [], color=palette.cycle, marker=".", label="ways it leads"))
+    entries.append(Patch(facecolor=paper, edgecolor=ink, hatch="////", label="goal"))
     if len(world.square.puddles):
-        entries.append(Patch(facecolor=PAPER, edgecolor=BLUE, label="edge of a puddle"))
+        entries.append(Patch(facecolor=paper, edgecolor=palette.stable, label="edge of a puddle"))
     boxes = "boxes of rules" if families == 1 else f"boxes of rules (1 of {families} layers)"
-    entries.append(Patch(facecolor=PAPER, edgecolor=INK, linewidth=0.4, label=boxes))
+    entries.append(Patch(facecolor=paper, edgecolor=ink, linewidth=0.4, label=boxes))
     return entries
