@@ -175,6 +175,7 @@ class StepsLearner:
                 done += 1
             bodies[before:done] = len(self.bodies.lower)
             self.end_episode()
+            bodies[done - 1] = len(self.bodies.lower)
         return _told(told, bodies)
 
     def follow(
