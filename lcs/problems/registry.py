@@ -5,25 +5,27 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Final, TypeAlias, final
+from typing import Final, Generic, TypeAlias, TypeVar, final
 
 from lcs.faults import LearnerError
 from lcs.problems.classes import SKEWED, Classes, checkerboard, multiplexer
 from lcs.problems.csv_table import read_table
 from lcs.problems.problem import Problem
 from lcs.problems.scitos import scitos
+from lcs.problems.steps import NOISE, Plane, gridworld, puddle_world
 from lcs.problems.table import Table, at_random, in_folds
 
 Value: TypeAlias = int | float | str | tuple[float, ...]
+Made_co = TypeVar("Made_co", bound=Problem | Plane, covariant=True)
 
 
 @final
 @dataclass(frozen=True, slots=True)
-class Offer:
+class Offer(Generic[Made_co]):
     """A problem by name: what it is, how it is made, and with what if nothing else is said."""
 
     about: str
-    make: Callable[..., Problem]
+    make: Callable[..., Made_co]
     defaults: Mapping[str, Value] = field(default_factory=dict)
 
 
@@ -41,6 +43,7 @@ MEANINGS: Final[Mapping[str, str]] = {
     "shuffled": "a share of the rows, at random, to test on instead of a part",
     "target": "the column that holds the class; without a word the last one",
     "without": "columns that are no input, parted by commas",
+    "noise": "standard deviation of what chance adds to a move, along each coordinate",
 }
 """What each name means that a problem is made with."""
 
@@ -50,6 +53,7 @@ LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "inputs": (1, 24),
     "flipped": (0.0, 1.0),
     "shuffled": (0.0, 1.0),
+    "noise": (0.0, 0.2),
 }
 """The least and the most of what is not checked where it is used."""
 
@@ -80,25 +84,25 @@ def _table(path: Path, target: str, without: str, **split: Value) -> Table:
     return _split(read_table(path, target or None, names), **split)  # type: ignore[arg-type]
 
 
-def _bits(address: int) -> Offer:
+def _bits(address: int) -> Offer[Problem]:
     n = address + 2**address
     about = f"real multiplexer of {n} inputs: {address} of them name which of the others is asked"
     made = partial(_multiplexer, address)
     return Offer(about, made, {"thresholds": (0.5,), **FLIPPED})
 
 
-def _board(divisions: int) -> Offer:
+def _board(divisions: int) -> Offer[Problem]:
     about = f"fields of two colors in turn, {divisions} along each of two inputs"
     return Offer(about, _checkerboard, {"divisions": divisions, "inputs": 2, **FLIPPED})
 
 
-def _robot(count: int, which: str) -> Offer:
+def _robot(count: int, which: str) -> Offer[Problem]:
     return Offer(
         f"a real robot's four actions, following walls, by {which}", partial(_scitos, count), SPLIT
     )
 
 
-PROBLEMS: Final[Mapping[str, Offer]] = {
+PROBLEMS: Final[Mapping[str, Offer[Problem]]] = {
     "experiment_1": Offer(
         "the thesis's first (4.4): the real 6-multiplexer, all thresholds 0.5",
         partial(_experiment, "experiment_1"),
@@ -120,13 +124,27 @@ PROBLEMS: Final[Mapping[str, Offer]] = {
 }
 """In the order in which they are listed."""
 
+WORLDS: Final[Mapping[str, Offer[Plane]]] = {
+    "gridworld": Offer(
+        "four moves of 0.05 in the unit square to the goal x + y > 1.9 (Lanzi et al. 2005)",
+        gridworld,
+        {"noise": 0.0},
+    ),
+    "puddles": Offer(
+        "the same with noise, around puddles that cost (Sutton 1996)",
+        puddle_world,
+        {"noise": NOISE},
+    ),
+}
+"""Problems of several steps, in that order too."""
 
-def table_offer(path: Path) -> Offer:
+
+def table_offer(path: Path) -> Offer[Problem]:
     """The rows of a CSV file as a problem."""
     return Offer("the rows of a table", partial(_table, path), {**COLUMNS, **SPLIT})
 
 
-def made(offer: Offer, given: Mapping[str, Value]) -> Problem:
+def made(offer: Offer[Made_co], given: Mapping[str, Value]) -> Made_co:
     """The problem, with what is given of what it may be made with.
 
     Raises:

@@ -15,11 +15,13 @@ class Names:
     """The inputs, and the actions' names, in the order of a table's columns and indices.
 
     case: what a rule was right or wrong in, one of them: "showing" where a row is shown again.
+    right: the word for a rule that was right: "true" where nothing was earned.
     """
 
     inputs: tuple[Input, ...]
     actions: tuple[str, ...]
     case: str = "case"
+    right: str = "right"
 
 
 def plain_names(table: RuleTable) -> Names:

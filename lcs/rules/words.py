@@ -54,7 +54,7 @@ def sentence(table: RuleTable, rule: int, names: Names, levels: Array) -> Senten
         rule,
         _when(conditions(table, rule, names)),
         outcome(table, rule, names, levels),
-        evidence(table, rule, names.case),
+        evidence(table, rule, names.case, names.right),
     )
 
 
@@ -143,16 +143,16 @@ def outcome(table: RuleTable, rule: int, names: Names, levels: Array) -> str:
     return action if table.prediction[rule] == levels[-1] else f"not {action}"
 
 
-def evidence(table: RuleTable, rule: int, case: str = "case") -> str:
-    """How often a rule was right."""
+def evidence(table: RuleTable, rule: int, case: str = "case", word: str = "right") -> str:
+    """How often a rule was right; `word` says that it was."""
     right, cases = int(table.right[rule]), int(table.right[rule] + table.wrong[rule])
     if cases == 0:
         return "never tried"
     if cases == 1:
-        return f"{'right' if right else 'wrong'} in its only {case}"
+        return f"{word if right else 'wrong'} in its only {case}"
     if right == cases:
-        return f"right in all {cases:,} {case}s"
-    return f"right in {right:,} of {cases:,} {case}s"
+        return f"{word} in all {cases:,} {case}s"
+    return f"{word} in {right:,} of {cases:,} {case}s"
 
 
 def shares(table: RuleTable, inputs: Array | None = None) -> Array:

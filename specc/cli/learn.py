@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final, TypeAlias, final
+from typing import TYPE_CHECKING, Annotated, TypeAlias, final
 
 import typer
 
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from specc.learning.experiment import Experiment
     from specc.learning.learning import Learnt, Stopped
 
-CYCLES: Final = 100_000
-TESTS: Final = 100_000
-
 
 @final
 class LearnerName(StrEnum):
@@ -30,6 +27,7 @@ class LearnerName(StrEnum):
     ALCSR = "alcsr"
     THESIS = "thesis"
     XCSR = "xcsr"
+    STEPS = "steps"
 
 
 @final
@@ -58,15 +56,27 @@ ProblemName: TypeAlias = Annotated[
     ),
 ]
 By: TypeAlias = Annotated[
-    LearnerName | None, typer.Option("--learner", "-l", help="Who learns; default alcsr.")
+    LearnerName | None,
+    typer.Option("--learner", "-l", help="Who learns; default alcsr, in a world steps."),
 ]
 Cycles: TypeAlias = Annotated[
     int | None,
-    typer.Option("--cycles", "-n", min=1, help="Of each run, tests included; default 100,000."),
+    typer.Option(
+        "--cycles",
+        "--episodes",
+        "-n",
+        min=1,
+        help="Of each run, tests included; default 100,000 cycles, in a world 1,000 episodes.",
+    ),
 ]
 Explore: TypeAlias = Annotated[
     float | None,
-    typer.Option("--explore", min=0.0, max=1.0, help="Share of cycles that learn; default 0.9."),
+    typer.Option(
+        "--explore",
+        min=0.0,
+        max=1.0,
+        help="Share of cycles, or of steps, that try at random; default 0.9, or 0.5.",
+    ),
 ]
 Given: TypeAlias = Annotated[
     list[str],
@@ -92,7 +102,12 @@ FirstSeed: TypeAlias = Annotated[
     int | None, typer.Option("--seed", min=0, help="Of the first run; default 0.")
 ]
 Tests: TypeAlias = Annotated[
-    int | None, typer.Option("--tests", min=1, help="Fresh problems at the end; default 100,000.")
+    int | None,
+    typer.Option(
+        "--tests",
+        min=1,
+        help="Fresh problems at the end; default 100,000, in a world 1,000 starts.",
+    ),
 ]
 Folder: TypeAlias = Annotated[
     Path | None,
@@ -129,6 +144,8 @@ def learn(
 ) -> int:
     """Let a classifier system learn a problem; see how well, how fast, and by which rules.
 
+    In a world, such as gridworld, the reward comes after several steps, and episodes are counted.
+
     Ctrl-C stops it. What a folder keeps goes on with --resume, and ends with the same bits as if it
     had never been stopped; so does what was killed, from its last checkpoint. A run that is done
     goes on to more --cycles.
@@ -147,6 +164,8 @@ def learn(
 
     `specc learn rows.csv --with target=kind --with without=time -o out/rows`
 
+    `specc learn gridworld --episodes 2000 -o out/gridworld`
+
     `specc learn --list`
     """
     if listing:
@@ -161,7 +180,7 @@ def learn(
 
 def _begun(problem: str | None, cycles: int | None, asked: Asked) -> "Experiment":
     """What is asked for."""
-    from specc.learning.experiment import Experiment
+    from specc.learning.experiment import Experiment, usual
 
     if problem is None:
         raise typer.BadParameter("PROBLEM is missing; `specc learn --list` tells which there are")
@@ -170,15 +189,15 @@ def _begun(problem: str | None, cycles: int | None, asked: Asked) -> "Experiment
         if "explore" in settings:
             raise typer.BadParameter("--explore and --set explore=... are one: leave one out")
         settings["explore"] = repr(asked.explore)
-    first = asked.seed or 0
+    first, meant = asked.seed or 0, usual(problem)
     return Experiment(
         problem=problem,
         given=asked.given,
-        learner=(asked.learner or LearnerName.ALCSR).value,
+        learner=asked.learner.value if asked.learner else meant.learner,
         settings=settings,
-        cycles=cycles or CYCLES,
+        cycles=cycles or meant.cycles,
         seeds=tuple(range(first, first + (asked.runs or 1))),
-        tests=asked.tests or TESTS,
+        tests=asked.tests or meant.tests,
     )
 
 
@@ -186,6 +205,7 @@ def _resumed(
     problem: str | None, cycles: int | None, asked: Asked, output: Path | None
 ) -> "Experiment":
     """What is kept in the folder, maybe with more cycles."""
+    from specc.learning.experiment import usual
     from specc.learning.folder import continued, experiment_in
     from specc.learning.unchanged import refuse_changed
 
@@ -195,7 +215,7 @@ def _resumed(
     if asked.is_something or problem not in {None, kept.problem}:
         raise typer.BadParameter(
             f"--resume goes on with the {kept.problem} that {output} keeps, as it was begun: only "
-            "--cycles can be said anew"
+            f"--{usual(kept.problem).unit}s can be said anew"
         )
     refuse_changed(kept)
     return continued(output, kept, cycles)
@@ -221,7 +241,7 @@ def _run(
     if isinstance(runs, Stopped):
         return _stopped(runs, output)
     with progress_bar(made.name) as bar:
-        learnt = concluded(experiment, made, runs, bar)
+        learnt = concluded(experiment, made, config, runs, bar)
     if output is not None:
         _write(learnt, output, style)
     _tell(learnt, form)
@@ -230,9 +250,12 @@ def _run(
 
 def _stopped(learnt: "Stopped", output: Path | None) -> Status:
     """Say how far it came, and how it goes on."""
+    from specc.learning.experiment import usual
+
     experiment = learnt.experiment
+    unit = usual(experiment.problem).unit
     which = f"in the run of seed {learnt.seed}, " * (len(experiment.seeds) > 1)
-    say(f"interrupted {which}after {learnt.done:,} of {experiment.cycles:,} cycles", "bold")
+    say(f"interrupted {which}after {learnt.done:,} of {experiment.cycles:,} {unit}s", "bold")
     if output is None:
         say("nothing was kept, since no folder was named: -o FOLDER")
     else:

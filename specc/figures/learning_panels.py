@@ -41,9 +41,17 @@ class Stated:
 
 
 def panels(
-    title: str, about: Sequence[str], heights: Sequence[float], end: float, palette: Palette
+    title: str,
+    about: Sequence[str],
+    heights: Sequence[float],
+    end: float,
+    palette: Palette,
+    over: str = "explore problems",
 ) -> tuple[Figure, list[Axes]]:
-    """A figure with panels one above the other, of heights in inches, up to `end` problems."""
+    """A figure with panels one above the other, of heights in inches, up to `end` problems.
+
+    over: what they are called where they are other things than problems.
+    """
     text: Heading = heading(title, list(about), [], WIDTH + BESIDE)
     tall = sum(heights) + GAP * (len(heights) - 1)
     figure = new_figure(LEFT + WIDTH + BESIDE, BELOW + tall + text.height + 0.1, palette)
@@ -58,7 +66,7 @@ def panels(
         above -= height + GAP
         made.append(axes)
     made[-1].tick_params(labelbottom=True)
-    made[-1].set_xlabel("explore problems")
+    made[-1].set_xlabel(over)
     write_heading(figure, text, palette, LEFT, BELOW + tall + text.height, BELOW)
     return figure, made
 

@@ -163,7 +163,7 @@ def _draw_head(axes: Axes, sheet: _Sheet) -> None:
         axes.text(left + INDENT, 0.25, first, ha="left", **small)
         axes.text(left + INDENT + BAR * sheet.column, 0.25, last, ha="right", **small)
     axes.text(sheet.bars + 0.1, 0.08, "then", **bold)
-    axes.text(sheet.bars + sheet.says, 0.08, "was right in", **bold)
+    axes.text(sheet.bars + sheet.says, 0.08, f"was {sheet.names.right} in", **bold)
 
 
 def _draw_rows(axes: Axes, sheet: _Sheet) -> None:

@@ -3,20 +3,25 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final, final
+from typing import Any, Final, TypeAlias, final
 
 from lcs.faults import LearnerError
 from lcs.problems.problem import Problem
-from lcs.problems.registry import PROBLEMS, Offer, Value, made, table_offer
+from lcs.problems.registry import PROBLEMS, WORLDS, Offer, Value, made, table_offer
+from lcs.problems.steps import Plane
+from lcs.steps.learner import StepsLearner
 from spec_schema.diagnostics import Diagnostic, SpecError
 from spec_schema.suggest import did_you_mean, there_are
 from specc.faults import fault, mistake
-from specc.learning.learners import LEARNERS, learner_for
+from specc.learning.learners import ALL, LEARNERS, OF_WORLDS, STEPS, learner_for
 from specc.learning.settings import choices, configured, value_of
 
 TABLE: Final = ".csv"
 VERSION: Final = 1
 """Of the record of an experiment."""
+
+Subject: TypeAlias = Problem | Plane
+"""What is learnt: a problem of one step, or a world of several."""
 
 
 @final
@@ -24,9 +29,10 @@ VERSION: Final = 1
 class Experiment:
     """Everything that the figures follow from.
 
-    problem: a name of `PROBLEMS`, or a CSV file. given: what it is made with, as it was written.
-    learner: a name of `LEARNERS`. settings: of its constants, as they were written.
-    cycles: of each run, tests included. seeds: one run from each. tests: fresh problems at the end.
+    problem: a name of `PROBLEMS` or `WORLDS`, or a CSV file. given: what it is made with, as it was
+    written. learner: a name of `ALL`. settings: of its constants, as they were written.
+    cycles: of each run, tests included; of a world episodes. seeds: one run from each. tests: fresh
+    problems at the end; of a world starts.
     digest: of the table's file, SHA-256; "" where there is none.
     """
 
@@ -38,6 +44,26 @@ class Experiment:
     seeds: tuple[int, ...]
     tests: int
     digest: str = ""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Usual:
+    """What is meant where nothing is said, and what `cycles` counts."""
+
+    learner: str
+    cycles: int
+    tests: int
+    unit: str
+
+
+OF_PROBLEMS: Final = Usual("alcsr", 100_000, 100_000, "cycle")
+OF_STEPS: Final = Usual(STEPS, 1_000, 1_000, "episode")
+
+
+def usual(problem: str) -> Usual:
+    """What is meant for a problem where nothing is said."""
+    return OF_STEPS if problem in WORLDS else OF_PROBLEMS
 
 
 def record_of(experiment: Experiment) -> dict[str, Any]:
@@ -59,8 +85,8 @@ def experiment_of(record: Mapping[str, Any]) -> Experiment:
     return found
 
 
-def problem_of(experiment: Experiment) -> Problem:
-    """The problem that is learnt.
+def problem_of(experiment: Experiment) -> Subject:
+    """The problem or the world that is learnt.
 
     Raises:
         SpecError: it is unknown (V401), a name or value of it is wrong (V341, V342), or a table or
@@ -74,40 +100,55 @@ def problem_of(experiment: Experiment) -> Problem:
         raise fault("V402", experiment.problem, str(error)) from error
 
 
-def config_of(experiment: Experiment, made: Problem) -> Any:
+def config_of(experiment: Experiment, made: Subject) -> Any:
     """The config of the learner, which is tried on the problem.
 
     Raises:
         SpecError: a constant or reading is unknown (V341), or can't have that value, alone or
-            beside the others (V342).
+            beside the others, or the learner learns no such problems (V342).
     """
     named = ", ".join(f"{name}={text}" for name, text in experiment.settings.items())
-    known = LEARNERS[experiment.learner]
+    _refuse_other_learners(experiment, made)
+    known = ALL[experiment.learner]
     try:
         config = configured(known.config, experiment.settings, experiment.learner)
-        learner_for(made, experiment.learner, config, 0)
+        if isinstance(made, Plane):
+            StepsLearner(made.actions, made.inputs, config)
+        else:
+            learner_for(made, experiment.learner, config, 0)
     except LearnerError as error:
         raise fault("V342", named or experiment.learner, str(error)) from error
     if not 0.0 <= config.explore <= 1.0:
-        raise fault("V342", named, "explore is a share of cycles, from 0 to 1")
+        raise fault("V342", named, "explore is a share, from 0 to 1")
     return config
 
 
-def offer_of(name: str) -> Offer:
-    """The problem of a name, or the table of a file.
+def offer_of(name: str) -> Offer[Subject]:
+    """The problem or the world of a name, or the table of a file.
 
     Raises:
         SpecError: nothing is named so (V401).
     """
     if name in PROBLEMS:
         return PROBLEMS[name]
+    if name in WORLDS:
+        return WORLDS[name]
     if Path(name).is_dir():
         raise fault("V401", name, "this is a folder", "name a table in it: a .csv file")
     if is_table(name):
         return table_offer(Path(name))
-    remedy = did_you_mean(name, list(PROBLEMS))
+    remedy = did_you_mean(name, [*PROBLEMS, *WORLDS])
     remedy = remedy or "`specc learn --list` lists them; a table is named by its file, rows.csv"
     raise fault("V401", name, f"no problem is named '{name}'", remedy)
+
+
+def _refuse_other_learners(experiment: Experiment, made: Subject) -> None:
+    of_them, what = (OF_WORLDS, "a world") if isinstance(made, Plane) else (LEARNERS, "a problem")
+    if experiment.learner not in of_them:
+        steps = "several steps" if isinstance(made, Plane) else "one step"
+        message = f"{experiment.problem} is {what} of {steps}, which it does not learn"
+        written = " or ".join(f"--learner {name}" for name in of_them)
+        raise fault("V342", f"--learner {experiment.learner}", message, f"write {written}")
 
 
 def _refuse_unfit(read: Experiment) -> None:
@@ -123,16 +164,16 @@ def _refuse_unfit(read: Experiment) -> None:
     for each in (word for words in written for word in words):
         if not isinstance(each, str):
             raise TypeError(f"{each!r} is no text")
-    if read.learner not in LEARNERS:
+    if read.learner not in ALL:
         raise ValueError(f"no learner is named '{read.learner}'")
 
 
 def is_table(problem: str) -> bool:
     """Whether a problem is the table of a file."""
-    return problem not in PROBLEMS and Path(problem).suffix.lower() == TABLE
+    return problem not in {*PROBLEMS, *WORLDS} and Path(problem).suffix.lower() == TABLE
 
 
-def _values(offer: Offer, given: Mapping[str, str], named: str) -> dict[str, Value]:
+def _values(offer: Offer[Subject], given: Mapping[str, str], named: str) -> dict[str, Value]:
     """What the problem is made with, as values."""
     values: dict[str, Any] = {}
     problems: list[Diagnostic] = []

@@ -12,7 +12,7 @@ from typing import Final
 
 from specc.faults import fault
 from specc.files import json_bytes, write_atomically
-from specc.learning.experiment import Experiment, experiment_of, record_of
+from specc.learning.experiment import Experiment, experiment_of, record_of, usual
 
 EXPERIMENT: Final = "experiment.json"
 CHECKPOINT: Final = "checkpoint.npz"
@@ -90,8 +90,9 @@ def continued(folder: Path, kept: Experiment, cycles: int | None) -> Experiment:
     if cycles in {None, kept.cycles}:
         return kept
     if cycles is not None and cycles < kept.cycles:
-        message = f"{cycles:,} cycles are fewer than the {kept.cycles:,} that it is to have"
-        raise fault("V403", folder, message, "write more --cycles, or begin in another folder")
+        unit = usual(kept.problem).unit
+        message = f"{cycles:,} {unit}s are fewer than the {kept.cycles:,} that it is to have"
+        raise fault("V403", folder, message, f"write more --{unit}s, or begin in another folder")
     longer = dataclasses.replace(kept, cycles=cycles)
     write_experiment(folder, longer)
     return longer

@@ -15,6 +15,7 @@ from lcs.course import Learner
 from lcs.faults import LearnerError
 from lcs.problems.problem import Problem
 from lcs.state import Saved
+from lcs.steps import config as steps
 from lcs.xcsr import config as xcsr
 from lcs.xcsr.learner import XCSR
 
@@ -26,11 +27,20 @@ class SavedLearner(Learner, Saved, Protocol):
 @final
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A learner by name: what it is, its config, and how it is made for a problem."""
+    """A learner of problems by name: what it is, its config, and how it is made for a problem."""
 
     about: str
     config: Any
     make: Callable[[Problem, Any, int], SavedLearner]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class KnownOfWorlds:
+    """A learner of several steps by name: what it is, and its config."""
+
+    about: str
+    config: steps.Config
 
 
 def _alcsr(problem: Problem, config: alcsr.Config, seed: int) -> SavedLearner:
@@ -65,6 +75,19 @@ LEARNERS: Final[Mapping[str, Known]] = {
     "xcsr": Known("accuracy-based fitness (Wilson 2000), the usual peer", xcsr.Config(), _xcsr),
 }
 """In the order in which they are listed."""
+
+STEPS: Final = "steps"
+
+OF_WORLDS: Final[Mapping[str, KnownOfWorlds]] = {
+    STEPS: KnownOfWorlds("boxes that divide, for the delayed rewards of a world", steps.Config()),
+}
+
+ALL: Final[Mapping[str, Known | KnownOfWorlds]] = {**LEARNERS, **OF_WORLDS}
+
+
+def called(learner: str) -> str:
+    """A learner in a sentence: `steps` alone would be read as the word."""
+    return f"the learner {learner}" if learner in OF_WORLDS else learner
 
 
 def learner_for(problem: Problem, name: str, config: Any, seed: int) -> SavedLearner:

@@ -3,33 +3,31 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
-from lcs.problems.problem import Problem
-from lcs.rules.compaction import Compacted
-from lcs.rules.experience import Experience
+from lcs.problems.steps import Plane
+from specc.faults import fault
 from specc.learning import folder as folders
-from specc.learning.experiment import Experiment
-from specc.learning.resuming import keep, taken_up
-from specc.learning.running import Run, begun, go_on, load, standing
-from specc.learning.summary import Summary, summed_up
-from specc.learning.thinning import figures_of, seen_by, thinned
+from specc.learning.experiment import Experiment, Subject
+from specc.learning.resuming import DAMAGED, keep, taken_up
+from specc.learning.run import Outcome, Run, Teacher, Tell
+from specc.learning.running import go_on
+from specc.learning.teaching_problems import ProblemTeacher
+from specc.learning.teaching_worlds import WorldTeacher
+
+AnyRun: TypeAlias = Run[Any, Any]
+"""Of a problem, or of a world: its teacher knows."""
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Learnt:
-    """What came of an experiment: its runs in the order of seeds; of each, what follows from it.
-
-    seen: the last examples that a run learnt from. compacted: few rules that say the same on them.
-    """
+    """What came of an experiment: its runs in the order of seeds, and of each what follows."""
 
     experiment: Experiment
-    problem: Problem
-    runs: tuple[Run, ...]
-    seen: tuple[Experience, ...]
-    compacted: tuple[Compacted, ...]
-    summaries: tuple[Summary, ...]
+    problem: Subject
+    runs: tuple[AnyRun, ...]
+    outcomes: tuple[Outcome[Any], ...]
 
 
 @final
@@ -44,13 +42,13 @@ class Stopped:
 
 def learnt_from(
     experiment: Experiment,
-    problem: Problem,
+    problem: Subject,
     config: Any,
     folder: Path | None,
     *,
-    tell: Callable[[str, int, int], None],
+    tell: Tell,
     shall_stop: Callable[[], bool],
-) -> tuple[Run, ...] | Stopped:
+) -> tuple[AnyRun, ...] | Stopped:
     """All runs of an experiment, or what is left of them.
 
     Args:
@@ -63,21 +61,24 @@ def learnt_from(
         SpecError: the experiment can't be run, or a checkpoint can't be read or written.
         OSError: a checkpoint can't be read.
     """
-    load(experiment, problem, config)
-    runs: list[Run] = []
+    teacher = _teacher(experiment, problem, config)
+    teacher.advance(teacher.begun(0), 1)  # to load kernels is no time of learning
+    runs: list[AnyRun] = []
     for seed in experiment.seeds:
-        run = _taken_up_or_begun(experiment, problem, config, seed, folder)
+        run = _taken_up_or_begun(teacher, seed, folder)
         before = experiment.cycles * len(runs)
 
-        def advanced(run: Run, before: int = before) -> None:
+        def advanced(run: AnyRun, before: int = before) -> None:
             named = f"seed {run.seed}: " * (len(experiment.seeds) > 1)
             tell(
-                named + standing(run), before + run.done, experiment.cycles * len(experiment.seeds)
+                named + teacher.standing(run),
+                before + run.done,
+                experiment.cycles * len(experiment.seeds),
             )
 
         go_on(
             run,
-            problem,
+            teacher.advance,
             experiment.cycles,
             tell=advanced,
             keep=lambda run: _keep(run, folder, is_last=run.done == experiment.cycles),
@@ -90,32 +91,30 @@ def learnt_from(
 
 
 def concluded(
-    experiment: Experiment,
-    problem: Problem,
-    runs: tuple[Run, ...],
-    tell: Callable[[str, int, int], None],
+    experiment: Experiment, problem: Subject, config: Any, runs: tuple[AnyRun, ...], tell: Tell
 ) -> Learnt:
     """What came of runs that are done."""
-    seen = tuple(seen_by(run, problem) for run in runs)
-    compacted, summaries = [], []
-    for i, run in enumerate(runs):
-        tell("compacting rules", 2 * i, 2 * len(runs))
-        few = thinned(run, problem, seen[i])
-        tell("testing", 2 * i + 1, 2 * len(runs))
-        figures = figures_of(few.table, run, problem, experiment.tests)
-        compacted.append(few)
-        summaries.append(summed_up(run, problem, experiment.tests, figures))
-    return Learnt(experiment, problem, runs, seen, tuple(compacted), tuple(summaries))
+    outcomes = _teacher(experiment, problem, config).concluded(runs, tell)
+    return Learnt(experiment, problem, runs, outcomes)
 
 
-def _taken_up_or_begun(
-    experiment: Experiment, problem: Problem, config: Any, seed: int, folder: Path | None
-) -> Run:
-    if folder is not None and folders.checkpoint(folder, seed).exists():
-        return taken_up(folders.checkpoint(folder, seed))
-    return begun(experiment, problem, config, seed)
+def _teacher(experiment: Experiment, problem: Subject, config: Any) -> Teacher[Any, Any, Any]:
+    if isinstance(problem, Plane):
+        return WorldTeacher(problem, config, experiment.tests)
+    return ProblemTeacher(problem, experiment.learner, config, experiment.tests)
 
 
-def _keep(run: Run, folder: Path | None, *, is_last: bool) -> None:
+def _taken_up_or_begun(teacher: Teacher[Any, Any, Any], seed: int, folder: Path | None) -> AnyRun:
+    begun: AnyRun = teacher.begun(seed)
+    if folder is None or not folders.checkpoint(folder, seed).exists():
+        return begun
+    path = folders.checkpoint(folder, seed)
+    found = taken_up(path)
+    if type(found.learner) is not type(begun.learner):
+        raise fault("V404", path, "this checkpoint is of another learner", DAMAGED)
+    return found
+
+
+def _keep(run: AnyRun, folder: Path | None, *, is_last: bool) -> None:
     if folder is not None:
         keep(run, folders.checkpoint(folder, run.seed), is_last=is_last)

@@ -86,7 +86,23 @@ XCSR: Final[Mapping[str, str]] = {
     "outside": "what becomes of inputs outside the range",
 }
 
-CONSTANTS: Final[Mapping[str, Mapping[str, str]]] = {"alcsr": ALCSR, "thesis": ALCSR, "xcsr": XCSR}
+STEPS: Final[Mapping[str, str]] = {
+    "explore": "share of steps that try an action at random; those are remembered",
+    "discount": "what a reward is worth one step later",
+    "memories": "steps that are remembered at most, a fair sample of all",
+    "fed": "memories of each action that a box needs",
+    "families": "layers of boxes that vote together",
+    "first": "tries after which boxes are first grown; anew whenever there were twice as many",
+    "generations": "how often they are grown at such a time",
+    "longest": "steps after which an episode is given up",
+}
+
+CONSTANTS: Final[Mapping[str, Mapping[str, str]]] = {
+    "alcsr": ALCSR,
+    "thesis": ALCSR,
+    "xcsr": XCSR,
+    "steps": STEPS,
+}
 
 OF_BREEDING: Final = (
     *("breed_level", "breeding_neighbors", "breeding_share", "generalize", "mutate", "mutation"),

@@ -7,18 +7,20 @@ and how long it took. A run that goes on from it gives the same bits as one that
 import io
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any, Final
 
 import numpy as np
 
-from lcs.course import Course
 from lcs.faults import LearnerError
 from lcs.saving import KINDS, as_bytes, from_bytes
 from specc.faults import fault
 from specc.files import write_atomically
-from specc.learning.running import Run
+from specc.learning.courses import Answered, Walked
+from specc.learning.run import Run
 
 NARROW: Final = {
     "kind": np.int8,
@@ -26,19 +28,26 @@ NARROW: Final = {
     "rules": np.int32,
     "births": np.int32,
     "deaths": np.int32,
+    "right": np.int32,
+    "steps": np.int32,
+    "boxes": np.int32,
 }
 """How columns of a course are kept."""
+
+OF_KINDS: Final[Mapping[str, Answered | Walked]] = {"StepsLearner": Walked.none()}
+"""The course that a learner of this kind has; of all others `Answered`."""
 
 UNREADABLE: Final = (
     *(LearnerError, KeyError, ValueError, EOFError),
     *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError),
+    *(TokenError, SyntaxError),  # of a header, which numpy reads before its checksum
 )
 """What a file that is damaged anywhere raises while it is unpacked."""
 
 DAMAGED: Final = "delete it, and its run begins anew"
 
 
-def keep(run: Run, path: Path, *, is_last: bool) -> None:
+def keep(run: Run[Any, Any], path: Path, *, is_last: bool) -> None:
     """Write the run; what was kept before is replaced in one step.
 
     is_last: of this run, so that it is worth the time to make the file small.
@@ -46,11 +55,10 @@ def keep(run: Run, path: Path, *, is_last: bool) -> None:
     Raises:
         SpecError: it can't be written (V347).
     """
-    course, right = run.so_far()
-    columns = {each.name: getattr(course, each.name) for each in fields(Course)}
+    course = run.so_far()
+    columns = {each.name: getattr(course, each.name) for each in fields(course)}
     kept: dict[str, Any] = {
         "learner": np.frombuffer(as_bytes(run.learner.state()), np.uint8),
-        "right": right.astype(np.int32),
         "seed": np.array(run.seed),
         "done": np.array(run.done),
         "seconds": np.array(run.seconds),
@@ -62,7 +70,7 @@ def keep(run: Run, path: Path, *, is_last: bool) -> None:
     write_atomically(path, content.getvalue())
 
 
-def taken_up(path: Path) -> Run:
+def taken_up(path: Path) -> Run[Any, Any]:
     """The run that was kept there.
 
     Raises:
@@ -72,18 +80,16 @@ def taken_up(path: Path) -> Run:
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as kept:
             state = from_bytes(kept["learner"].tobytes())
-            columns = {each.name: kept[each.name] for each in fields(Course)}
-            course = Course(
-                **{
-                    name: values.astype(np.float64 if name == "error" else np.int64)
-                    for name, values in columns.items()
-                }
-            )
+            none: Any = OF_KINDS.get(state.kind, Answered.none())
+            columns = {
+                each.name: kept[each.name].astype(getattr(none, each.name).dtype)
+                for each in fields(none)
+            }
             return Run(
                 int(kept["seed"]),
                 KINDS[state.kind](state),
-                [course],
-                [kept["right"].astype(np.int64)],
+                none,
+                [type(none)(**columns)],
                 int(kept["done"]),
                 float(kept["seconds"]),
             )

@@ -8,8 +8,10 @@ import numpy as np
 from lcs.arrays import Booleans
 from lcs.curves import curve_of
 from lcs.problems.problem import Problem
-from specc.learning.courses import last_tests
-from specc.learning.running import Run, fresh
+from specc.learning.courses import Answered, last_tests
+from specc.learning.drawing import fresh
+from specc.learning.learners import SavedLearner
+from specc.learning.run import Run
 
 TESTS: Final = 1_000
 MOST_TESTS: Final = 10_000
@@ -63,17 +65,20 @@ class Summary:
         return self.cycles / max(self.seconds, 1e-9)
 
 
-def summed_up(run: Run, problem: Problem, count: int, thinned: Thinned) -> Summary:
+def summed_up(
+    run: Run[SavedLearner, Answered], problem: Problem, count: int, thinned: Thinned
+) -> Summary:
     """The figures of a run, tested on so many fresh problems."""
-    course, right = run.so_far()
+    answered = run.so_far()
+    course = answered.course
     x, classes = fresh(problem, run.seed, count)
     x, is_beyond = run.learner.rules().at_ends(x)
     actions, _ = run.learner.decide(x)
     is_tried = ~course.is_test
     peak = int(np.argmax(course.rules))
-    tests = last_tests(course, right, TESTS)
-    many = last_tests(course, right, MOST_TESTS)
-    errors = curve_of(course, right).error[-TESTS:]
+    tests = last_tests(answered, TESTS)
+    many = last_tests(answered, MOST_TESTS)
+    errors = curve_of(course, answered.right).error[-TESTS:]
     return Summary(
         seed=run.seed,
         cycles=run.done,

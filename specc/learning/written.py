@@ -2,14 +2,14 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
-from lcs.course import Course
 from lcs.curves import curve_of, over_last
 from lcs.rules.as_csv import as_csv
 from lcs.rules.as_json import as_record
@@ -17,10 +17,11 @@ from lcs.rules.words import in_words
 from lcs.saving import as_bytes
 from specc.figures.style_names import Style
 from specc.files import json_bytes, write_atomically
+from specc.learning.courses import Answered, Walked
 from specc.learning.folder import RECORD, SUMMARY, run_folder
 from specc.learning.learning import Learnt
 from specc.learning.pictures import count_of, pictures
-from specc.learning.running import WINDOW, Run
+from specc.learning.teaching_problems import WINDOW
 from specc.learning.thinning import names_of
 from specc.texts.learning import learning_record, learning_text
 
@@ -62,12 +63,13 @@ def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, b
     for run in learnt.runs:
         inside = run_folder(folder, run.seed)
         yield inside / "learner.npz", as_bytes(run.learner.state())
-        yield inside / "curve.csv", _csv(run)
-        yield inside / "course.npz", _npz(run)
+        course = run.so_far()
+        yield inside / "curve.csv", _walks(course) if isinstance(course, Walked) else _csv(course)
+        yield inside / "course.npz", _npz(course)
     names = names_of(learnt.problem)
-    for run, seen, compacted in zip(learnt.runs, learnt.seen, learnt.compacted, strict=True):
-        inside, few = run_folder(folder, run.seed), compacted.table
-        text = "".join(f"{each}\n" for each in in_words(few, names, seen.inputs))
+    for run, outcome in zip(learnt.runs, learnt.outcomes, strict=True):
+        inside, few = run_folder(folder, run.seed), outcome.compacted.table
+        text = "".join(f"{each}\n" for each in in_words(few, names, outcome.seen.inputs))
         yield inside / "rules.txt", text.encode()
         yield inside / "rules.csv", as_csv(few, names).encode()
         yield inside / "rules.json", json_bytes(as_record(few, names))
@@ -76,10 +78,10 @@ def _files(learnt: Learnt, folder: Path, style: Style) -> Iterator[tuple[Path, b
         yield folder / name, content
 
 
-def _csv(run: Run) -> bytes:
+def _csv(answered: Answered) -> bytes:
     """What each test showed, a row for each; performance and system error are of the last 50."""
-    course, right = run.so_far()
-    curve, at = curve_of(course, right), np.flatnonzero(course.is_test)
+    course = answered.course
+    curve, at = curve_of(course, answered.right), np.flatnonzero(course.is_test)
     columns = (
         at + 1,
         curve.tries,
@@ -91,17 +93,29 @@ def _csv(run: Run) -> bytes:
         course.births[at],
         course.deaths[at],
     )
+    return _table(COLUMNS, columns)
+
+
+def _walks(walked: Walked) -> bytes:
+    """Each episode, and what the best actions led to after it; a row for each."""
+    names = [each.name for each in fields(walked)]
+    columns = [getattr(walked, name) for name in names]
+    rounded = [each.round(6) if each.dtype == np.float64 else each * 1 for each in columns]
+    return _table(("episode", *names), (np.arange(1, len(walked.steps) + 1), *rounded))
+
+
+def _table(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> bytes:
+    """Columns as CSV."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow(names)
     writer.writerows(zip(*(column.tolist() for column in columns), strict=True))
     return text.getvalue().encode()
 
 
-def _npz(run: Run) -> bytes:
-    """Every cycle of a run: the course, and the right actions."""
-    course, right = run.so_far()
+def _npz(course: Answered | Walked) -> bytes:
+    """Every cycle or episode of a run."""
     content = io.BytesIO()
-    columns = {each.name: getattr(course, each.name) for each in fields(Course)}
-    np.savez_compressed(content, right=right, **columns)
+    columns = {each.name: getattr(course, each.name) for each in fields(course)}
+    np.savez_compressed(content, **columns)
     return content.getvalue()

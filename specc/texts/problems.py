@@ -2,8 +2,10 @@
 
 from typing import Any, Final
 
-from lcs.problems.registry import COLUMNS, MEANINGS, PROBLEMS, SPLIT
-from specc.learning.learners import LEARNERS
+from lcs.problems.problem import Problem
+from lcs.problems.registry import COLUMNS, MEANINGS, PROBLEMS, SPLIT, WORLDS, Offer
+from lcs.problems.steps import Plane
+from specc.learning.learners import ALL, LEARNERS, OF_WORLDS
 from specc.learning.meanings import CONSTANTS, idle
 from specc.learning.settings import choices, listed, shown
 from verifier.report.layout import INDENT, section, table
@@ -16,16 +18,20 @@ def listing_text(learner: str) -> str:
     """Problems, what they are made with, learners, and all that can be set of one of them."""
     problems = [(name, offer.about) for name, offer in PROBLEMS.items()]
     problems.append((TABLE, "the rows of a table; its first line names the columns"))
+    worlds = [(name, offer.about) for name, offer in WORLDS.items()]
     learners = [(name, known.about) for name, known in LEARNERS.items()]
-    config = LEARNERS[learner].config
+    of_worlds = [(name, known.about) for name, known in OF_WORLDS.items()]
+    config = ALL[learner].config
     constants = [
         (name, shown(value), _said_of(name, value, learner)) for name, value in listed(config)
     ]
     return "\n\n".join(
         [
-            section("problems", [table(problems, INDENT)]),
+            section("problems of one step", [table(problems, INDENT)]),
+            section("worlds of several steps", [table(worlds, INDENT)]),
             section("made with (--with NAME=VALUE)", [table(_made_with(), INDENT)]),
-            section("learners (--learner NAME)", [table(learners, INDENT)]),
+            section("learners of problems (--learner NAME)", [table(learners, INDENT)]),
+            section("learner of worlds", [table(of_worlds, INDENT)]),
             section(f"constants of {learner} (--set NAME=VALUE)", [table(constants, INDENT)]),
         ]
     )
@@ -34,16 +40,17 @@ def listing_text(learner: str) -> str:
 def listing_record(learner: str) -> dict[str, Any]:
     """The same for programs."""
     return {
-        "problems": {
-            name: {
-                "about": offer.about,
-                "with": {key: shown(value) for key, value in offer.defaults.items()},
-            }
-            for name, offer in PROBLEMS.items()
-        },
-        "learners": {name: known.about for name, known in LEARNERS.items()},
-        "constants": {name: shown(value) for name, value in listed(LEARNERS[learner].config)},
+        "problems": {name: _offered(offer) for name, offer in PROBLEMS.items()},
+        "worlds": {name: _offered(offer) for name, offer in WORLDS.items()},
+        "learners": {name: known.about for name, known in ALL.items()},
+        "constants": {name: shown(value) for name, value in listed(ALL[learner].config)},
     }
+
+
+def _offered(offer: Offer[Any]) -> dict[str, Any]:
+    """What a problem is, and with what it is made if nothing else is said."""
+    made_with = {key: shown(value) for key, value in offer.defaults.items()}
+    return {"about": offer.about, "with": made_with}
 
 
 def _said_of(name: str, value: object, learner: str) -> str:
@@ -51,14 +58,15 @@ def _said_of(name: str, value: object, learner: str) -> str:
     said = CONSTANTS[learner][name]
     if not _is_number(value):
         said += f": {choices(value).removeprefix('write ')}"
-    while_ = idle(LEARNERS[learner].config).get(name)
+    while_ = idle(ALL[learner].config).get(name)
     return f"{said} (does nothing while {while_})" if while_ else said
 
 
 def _made_with() -> list[tuple[str, str, str]]:
     """Each name, what it means, and whom it belongs to."""
     owners: dict[str, list[str]] = {name: [] for name in MEANINGS}
-    for name, offer in PROBLEMS.items():
+    offers: dict[str, Offer[Problem | Plane]] = {**PROBLEMS, **WORLDS}
+    for name, offer in offers.items():
         for key in offer.defaults:
             owners[key].append(name)
     for key in {**COLUMNS, **SPLIT}:

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from lcs.problems.classes import checkerboard
-from lcs.problems.registry import PROBLEMS
+from lcs.problems.registry import PROBLEMS, WORLDS
 from lcs.saving import load
 from specc.cli import main
 from specc.cli.learn import LearnerName
-from specc.learning.learners import LEARNERS
-from specc.learning.running import fresh
+from specc.learning.drawing import fresh
+from specc.learning.learners import ALL
 
 QUICK = ["--cycles", "800", "--tests", "500"]
 
@@ -22,15 +22,6 @@ QUICK = ["--cycles", "800", "--tests", "500"]
 @pytest.fixture(autouse=True)
 def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of an experiment of two runs."""
-    folder = tmp_path_factory.mktemp("kept") / "out"
-    asked = ["learn", "checkerboard_3x3", *QUICK, "--runs", "2", "--seed", "4", "-o", str(folder)]
-    assert main(asked) == 0
-    return folder
 
 
 def result(capsys: pytest.CaptureFixture[str]) -> Any:
@@ -54,7 +45,7 @@ def test_a_folder_holds_curves_figures_learners_and_the_summary(kept: Path) -> N
         "experiment.json", "summary.txt", "summary.json", "learning.svg", "population.svg",
         *(
             f"seed_{seed}/{name}"
-            for seed in (4, 5)
+            for seed in (0, 1)
             for name in ("checkpoint.npz", "course.npz", "curve.csv", "learner.npz")
         ),
     }  # fmt: skip
@@ -68,8 +59,8 @@ def test_the_figures_of_the_summary_follow_from_the_files_beside_it(kept: Path) 
         course = np.load(folder / "course.npz")
         is_test = course["kind"] == 0
 
-        assert run["cycles"] == len(course["kind"]) == 800
-        assert run["tried"] == 800 - len(rows) == (~is_test).sum()
+        assert run["cycles"] == len(course["kind"]) == 1_000
+        assert run["tried"] == 1_000 - len(rows) == (~is_test).sum()
         right = [int(row["right"]) for row in rows]
         assert right == (course["action"] == course["right"])[is_test].tolist()
         assert run["performance"] == np.mean(right)
@@ -106,7 +97,8 @@ def test_fresh_problems_where_an_action_has_no_rule_count_as_wrong(tmp_path: Pat
 def test_equal_seeds_give_equal_results_and_others_do_not(
     kept: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["learn", "checkerboard_3x3", *QUICK, "--seed", "5", "--format", "json"]) == 0
+    asked = ["learn", "checkerboard_3x3", "--cycles", "1000", "--tests", "500", "--seed", "1"]
+    assert main([*asked, "--format", "json"]) == 0
     [again] = result(capsys)["runs"]
     one, other = json.loads((kept / "summary.json").read_text())["runs"]
 
@@ -198,6 +190,14 @@ def test_a_run_of_one_cycle_is_told_as_one_and_without_warnings(
         (["experiment_1", "--with", "flips=0.1"], "V341", "there are thresholds, flipped"),
         (["experiment_1", "--with", "flipped=2"], "V402", "write one from 0 to 1"),
         (["scitos_2", "--with", "tested=9"], "V402", "tested is 1 to 4"),
+        (["puddels"], "V401", "did you mean 'puddles'?"),
+        (["gridworld", "--with", "noise=2"], "V402", "write one from 0 to 0.2"),
+        (["gridworld", "--with", "flipped=0.1"], "V341", "there is noise"),
+        (["gridworld", "--set", "discount=2"], "V342", "discount is from 0 to 1"),
+        (["gridworld", "--set", "fed=0"], "V342", "fed is 1 or more"),
+        (["gridworld", "--set", "season=3"], "V341", "steps has no constant 'season'"),
+        (["gridworld", "-l", "xcsr"], "V342", "write --learner steps"),
+        (["experiment_1", "-l", "steps"], "V342", "write --learner alcsr or"),
     ],
 )  # fmt: skip
 def test_what_can_not_be_learnt_is_told_with_what_to_write(
@@ -249,9 +249,10 @@ def test_everything_that_can_be_written_is_listed(capsys: pytest.CaptureFixture[
     found = result(capsys)
 
     assert found["problems"].keys() == PROBLEMS.keys()
-    assert found["learners"].keys() == LEARNERS.keys() == {each.value for each in LearnerName}
-    for name in (*found["problems"], *found["learners"], *found["constants"]):
+    assert found["worlds"].keys() == WORLDS.keys()
+    assert found["learners"].keys() == ALL.keys() == {each.value for each in LearnerName}
+    for name in (*found["problems"], *found["worlds"], *found["learners"], *found["constants"]):
         assert f"  {name} " in text
-    for problem in found["problems"].values():
+    for problem in (*found["problems"].values(), *found["worlds"].values()):
         for name in problem["with"]:
             assert f"  {name} " in text

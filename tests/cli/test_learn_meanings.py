@@ -10,7 +10,7 @@ from lcs.alcsr.config import GROWN, Config
 from lcs.alcsr.learner import ALCSR
 from lcs.problems.classes import multiplexer
 from specc.cli import main
-from specc.learning.learners import LEARNERS
+from specc.learning.learners import ALL
 from specc.learning.meanings import CONSTANTS, idle
 from specc.learning.settings import configured, listed
 
@@ -34,12 +34,12 @@ def learnt_with(config: Config) -> list[bytes]:
     return [each.tobytes() for each in (*kept, rules.lower, rules.upper, rules.weight)]
 
 
-@pytest.mark.parametrize("learner", LEARNERS)
+@pytest.mark.parametrize("learner", ALL)
 def test_each_constant_has_a_meaning_and_each_meaning_a_constant(learner: str) -> None:
-    named = [name for name, _ in listed(LEARNERS[learner].config)]
+    named = [name for name, _ in listed(ALL[learner].config)]
 
     assert sorted(named) == sorted(CONSTANTS[learner])
-    assert {*idle(LEARNERS[learner].config)} <= {*named}
+    assert {*idle(ALL[learner].config)} <= {*named}
 
 
 def test_what_is_said_to_do_nothing_does_nothing() -> None:

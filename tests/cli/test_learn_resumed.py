@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from specc.learning import running
 from specc.learning.experiment import Experiment, config_of, problem_of
 from specc.learning.learning import learnt_from
 from specc.learning.resuming import taken_up
+from specc.learning.teaching_problems import ProblemTeacher
 from specc.learning.warming import is_warm, warm
 
 COMMAND = (
@@ -36,14 +38,6 @@ BOARD = ["learn", "checkerboard_3x3", "--tests", "500"]
 @pytest.fixture(autouse=True)
 def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of an experiment that is done."""
-    folder = tmp_path_factory.mktemp("kept") / "out"
-    assert main([*BOARD, "--cycles", "1000", "-o", str(folder)]) == 0
-    return folder
 
 
 def started(*arguments: str) -> "subprocess.Popen[str]":
@@ -240,13 +234,15 @@ def test_ctrl_c_without_a_folder_says_that_nothing_was_kept(
 ) -> None:
     if not is_warm("alcsr"):
         warm("alcsr")
-    advance = running._advance
+    advance, calls = ProblemTeacher.advance, []
 
-    def interrupted(*given: object) -> float:
-        os.kill(os.getpid(), signal.SIGINT)
-        return advance(*given)  # type: ignore[arg-type]
+    def interrupted(*given: Any) -> float:
+        calls.append(given)
+        if len(calls) > 1:  # after kernels were loaded
+            os.kill(os.getpid(), signal.SIGINT)
+        return advance(*given)
 
-    monkeypatch.setattr(running, "_advance", interrupted)
+    monkeypatch.setattr(ProblemTeacher, "advance", interrupted)
 
     assert main([*BOARD, "--cycles", "1000"]) == 130
     out, err = capsys.readouterr()
