@@ -1,6 +1,6 @@
 """Requirements of a scenario: sentences, their names and dimensions checked, as code."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, final
 
@@ -14,6 +14,7 @@ from spec_schema.expressions.rewrite import names_in, resolve_texts, substitute
 from spec_schema.expressions.tree import Apply, Expr, Name, Number, walk
 from spec_schema.faults import Fault
 from spec_schema.places import Path
+from spec_schema.requirement_comparisons import quantified
 from spec_schema.requirement_sentences import (
     Predicate,
     Sentence,
@@ -34,12 +35,16 @@ MOST_NAMED: Final = 6
 @final
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A quantity of a run: its dimension, the values of a discrete one, and its unit's name."""
+    """A quantity of a run: its dimension, the values of a discrete one, and its unit's name.
+
+    is_periodic: it wraps, as an angle does.
+    """
 
     dimension: Dimension
     values: tuple[str, ...] = ()
     is_discrete: bool = False
     unit: str = ""
+    is_periodic: bool = False
 
 
 def lower_requirement(
@@ -52,7 +57,7 @@ def lower_requirement(
         for fault in error.faults:
             findings.fault(path, fault)
         return None
-    faults = [*_unknown(sentence, known)]
+    faults = _unknown(names_of(sentence), known)
     margins: dict[int, Expr] = {}
     dimensions: list[Dimension | None] = []
     for predicate in predicates_of(sentence):
@@ -72,9 +77,53 @@ def lower_requirement(
     return Requirement(text, formula, tuple(quantities), unit.text, unit.scale, origin)
 
 
-def _unknown(sentence: Sentence, known: Mapping[str, Measured]) -> list[Fault]:
+def read_quantity(
+    text: str, path: Path, known: Mapping[str, Measured], findings: Findings
+) -> Expr | None:
+    """An expression over a run, in SI; None, and findings, where it can't be used."""
+    try:
+        expr = quantified(text)
+    except RequirementError as error:
+        for fault in error.faults:
+            findings.fault(path, fault)
+        return None
+    resolved, quantities, faults = _resolved(expr, known)
+    named = [node for node in walk(expr) if isinstance(node, Name) and not is_quantity(node.name)]
+    faults += _unknown(named, known)
+    for fault in sorted(set(faults)):
+        findings.fault(path, fault)
+    return None if faults else substitute(resolved, quantities)
+
+
+def _resolved(
+    expr: Expr, known: Mapping[str, Measured]
+) -> tuple[Expr, dict[str, Expr], list[Fault]]:
+    """An expression with values by name as their index; its numbers with units in SI; its faults.
+
+    Of what is not known nothing is told here.
+    """
+    names = {node.name for node in walk(expr) if isinstance(node, Name)}
+    quantities = {name: parse_quantity(name) for name in names if is_quantity(name)}
+    found = dimension_of(expr, _dimensions(names, known))[1]
+    faults = [_in_its_unit(fault, expr, known) for fault in found]
+    values = {name: known[name].values for name in names if name in known and known[name].values}
+    resolved, more = resolve_texts(expr, values)
+    if names <= {*known, *quantities}:
+        faults += more  # the values of what is not known are not known either
+    return resolved, {name: Number(one.value) for name, one in quantities.items()}, faults
+
+
+def _dimensions(names: Iterable[str], known: Mapping[str, Measured]) -> dict[str, Dimension]:
+    """The dimensions of quantities of a run and of numbers with units."""
+    found = {name: known[name].dimension for name in names if name in known}
+    return found | {
+        name: parse_quantity(name).unit.dimension for name in names if is_quantity(name)
+    }
+
+
+def _unknown(names: Iterable[Name], known: Mapping[str, Measured]) -> list[Fault]:
     found = []
-    for node in names_of(sentence):
+    for node in names:
         if node.name not in known:
             message = f"a run has no quantity '{node.name}'"
             found.append(Fault(node.start, node.end, "S371", message, _meant(node.name, known)))
@@ -100,25 +149,16 @@ def _margin(
     """Robustness of a comparison in SI: 0 or more where it holds; its dimension; its faults."""
     condition = predicate.condition
     names = {node.name for node in walk(condition) if isinstance(node, Name)}
-    quantities = {name: parse_quantity(name) for name in names if is_quantity(name)}
-    dimensions = {name: one.dimension for name, one in known.items() if name in names}
-    dimensions |= {name: one.unit.dimension for name, one in quantities.items()}
-    found = dimension_of(condition, dimensions)[1]
-    faults = [_in_its_unit(fault, condition, known) for fault in found]
-    values = {name: known[name].values for name in names if name in known and known[name].values}
-    resolved, more = resolve_texts(condition, values)
-    if not names <= {*known, *quantities}:
-        more = []  # the values of what is not known are not known either
+    resolved, quantities, faults = _resolved(condition, known)
     discrete = {name for name in names if name in known and known[name].is_discrete}
     margin = signed(resolved, discrete)
     if margin is None:
         message = "two numbers are hardly ever equal"
         fault = Fault(predicate.start, predicate.end, "S374", message, "write `abs(a - b) < ...`")
-        return None, None, [*faults, *more, *([fault] if names <= {*known, *quantities} else [])]
-    dimension = None if faults else dimension_of(margin, dimensions)[0]
-    numbers = {name: Number(one.value) for name, one in quantities.items()}
+        return None, None, [*faults, *([fault] if names <= {*known, *quantities} else [])]
+    dimension = None if faults else dimension_of(margin, _dimensions(names, known))[0]
     sure = signed(resolved, discrete, TIE) or margin
-    return substitute(sure, numbers), dimension, [*faults, *more]
+    return substitute(sure, quantities), dimension, faults
 
 
 def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -> Fault:

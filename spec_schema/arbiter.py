@@ -22,7 +22,16 @@ from spec_schema.value_types import (
 )
 from spec_schema.variables import ConstantSpec, ControlSpec, OutputSpec
 
-PARADIGMS = ("rules", "subsumption", "weights", "competition", "plan", "module")
+PARADIGMS = (
+    "rules",
+    "subsumption",
+    "weights",
+    "competition",
+    "plan",
+    "module",
+    "alcsr",
+    "xcsr",
+)
 
 
 @final
@@ -108,6 +117,44 @@ class CompetitionSpec(StrictModel):
     )
 
 
+Count: TypeAlias = Annotated[int, Field(ge=0)]
+
+
+@final
+class LearnedRuleSpec(StrictModel):
+    """A rule that was learned: what is chosen in a box of what is read."""
+
+    choose: Name = Field(description="The choice.", examples=["avoid"])
+    when: Expression | None = Field(
+        default=None,
+        description="The box: comparisons of single reads with numbers in SI (without units), "
+        "joined by `and`; of a discrete read, whether it is one of its values. Without it, always.",
+        examples=["ahead < 0.31 and used > 0.5"],
+    )
+    right: Count = Field(
+        default=0, description="How often its choice was right in training.", examples=[412]
+    )
+    wrong: Count = Field(
+        default=0, description="How often its choice was wrong in training.", examples=[3]
+    )
+
+
+@final
+class LearnedSpec(StrictModel):
+    """What was learned: rules, and what is chosen where none of them holds."""
+
+    otherwise: Name | None = Field(
+        default=None,
+        description="The choice where no rule holds; without it, the first of `choices`.",
+        examples=["look"],
+    )
+    rules: Annotated[tuple[LearnedRuleSpec, ...], Strict(strict=False)] = Field(
+        default=(),
+        description="Written by `specc train`: the first rule that holds is chosen.",
+        examples=[[{"choose": "avoid", "when": "ahead < 0.31", "right": 412, "wrong": 3}]],
+    )
+
+
 Rules: TypeAlias = Annotated[tuple[RuleSpec, ...], Strict(strict=False), Field(min_length=1)]
 
 
@@ -146,6 +193,17 @@ class BySpec(StrictModel):
         default=None,
         description="A Python function of yours; it is run only where you allow it.",
         examples=["arbiters:choose"],
+    )
+
+    alcsr: LearnedSpec | None = Field(
+        default=None,
+        description="Rules that `specc train` learns by ALCSR (thesis, section 4).",
+        examples=[{"otherwise": "look"}],
+    )
+    xcsr: LearnedSpec | None = Field(
+        default=None,
+        description="Rules that `specc train` learns by XCSR (Wilson 2000).",
+        examples=[{"otherwise": "look"}],
     )
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""The comparisons of requirements: expressions of names such as `r.lamp.light` and `5 cm`.
+"""Expressions over a run, of names such as `r.lamp.light` and `5 cm`; comparisons among them.
 
 The reader of expressions knows neither dots nor units. So it is given the text with stand-ins of
 the same lengths in their places, and what it says is told of the names that were meant.
@@ -6,12 +6,16 @@ the same lengths in their places, and what it says is told of the names that wer
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Final
 
 from spec_schema.expressions.parse import parse
 from spec_schema.expressions.tree import COMPARISONS, Apply, Expr, Name, fold
 from spec_schema.faults import ExpressionError, Fault, UnitFault
-from spec_schema.requirement_words import RequirementError, Word
+from spec_schema.requirement_words import KEYWORDS, RequirementError, Word, words_of
 from spec_schema.units import parse_quantity
+
+SENTENCES: Final = KEYWORDS - {"not", "and", "or"}
+"""Words that stand in sentences alone."""
 
 
 def compared(text: str, words: list[Word]) -> Expr:
@@ -19,6 +23,45 @@ def compared(text: str, words: list[Word]) -> Expr:
 
     Raises:
         RequirementError: they can't be read, or compare nothing.
+    """
+    condition, faults = _read(text, words)
+    if not _is_comparison(condition):
+        remedy = "compare two quantities: `r.clearance > 5 cm`"
+        start, end = words[0].start, words[-1].end
+        faults.append(Fault(start, end, "S374", "nothing is compared here", remedy))
+    if faults:
+        raise RequirementError(*faults)
+    return condition
+
+
+def quantified(text: str) -> Expr:
+    """The expression over a run that a whole text is: `hypot(r.x - 5 m, r.y)`.
+
+    Raises:
+        RequirementError: it can't be read, or says more than an expression can.
+    """
+    words, faults = words_of(text, "an expression over a run")
+    faults += [_of_sentences(word) for word in words if word.text in SENTENCES]
+    if faults:
+        raise RequirementError(*faults)
+    if not words:
+        raise RequirementError(Fault(0, 1, "S370", "nothing is measured here", "name a quantity"))
+    expr, faults = _read(text, words)
+    if faults:
+        raise RequirementError(*faults)
+    return expr
+
+
+def _of_sentences(word: Word) -> Fault:
+    message = f"'{word.text}' is a word of sentences, and an expression belongs here"
+    return Fault(word.start, word.end, "S370", message, "a sentence is measured by `robustness`")
+
+
+def _read(text: str, words: list[Word]) -> tuple[Expr, list[Fault]]:
+    """The expression that words make, and what is wrong with its units.
+
+    Raises:
+        RequirementError: they can't be read.
     """
     start, end = words[0].start, words[-1].end
     named = [word for word in words if word.is_quantity or ("." in word.text and word.is_name)]
@@ -32,13 +75,7 @@ def compared(text: str, words: list[Word]) -> Expr:
     except ExpressionError as error:
         raise RequirementError(*(_named(moved(f, start), back) for f in error.faults)) from None
     faults = list(_bad_units([word for word in named if word.is_quantity]))
-    condition = _with_names(tree, back, start)
-    if not _is_comparison(condition):
-        remedy = "compare two quantities: `r.clearance > 5 cm`"
-        faults.append(Fault(start, end, "S374", "nothing is compared here", remedy))
-    if faults:
-        raise RequirementError(*faults)
-    return condition
+    return _with_names(tree, back, start), faults
 
 
 def moved(fault: Fault, by: int) -> Fault:

@@ -66,8 +66,8 @@ class RequirementError(Exception):
         super().__init__("; ".join(fault.message for fault in faults))
 
 
-def words_of(text: str) -> tuple[list[Word], list[Fault]]:
-    """The words in order, and a fault for each that belongs to another language.
+def words_of(text: str, what: str = "a requirement") -> tuple[list[Word], list[Fault]]:
+    """The words in order, and a fault for each that belongs to another language than `what`.
 
     >>> [word.text for word in words_of("r.x/2 >= 5 m/s until r.y < 1")[0]]
     ['r.x', '/', '2', '>=', '5 m/s', 'until', 'r.y', '<', '1']
@@ -86,7 +86,7 @@ def words_of(text: str) -> tuple[list[Word], list[Fault]]:
             remedy = {"=": "write == to compare", "&": "write and", "|": "write or"}.get(
                 found, COMPARE
             )
-            message = f"{quoted(found)} is not part of a requirement"
+            message = f"{quoted(found)} is not part of {what}"
             faults.append(Fault(start, end, "S370", message, remedy))
         elif kind == "name" and found.casefold() in OTHER_WORDS:
             remedy = f"write `{OTHER_WORDS[found.casefold()]}`"

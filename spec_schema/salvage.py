@@ -25,6 +25,8 @@ _NAMED = frozenset(
     | {"sensors", "things", "scatter", "lights", "robots"}
 )
 """The sections whose keys are names that other parts refer to."""
+_MEASURES: Final[Path] = ("train", "measures")
+"""Another such section, deeper down."""
 
 _ROLES: Final = ("sensed", "driven", "both")
 _STAND_INS: Final[Mapping[str, Mapping[str, Plain]]] = {
@@ -75,6 +77,11 @@ def salvage(model: type[Model], data: dict[str, Plain]) -> Salvaged[Model]:
     return Salvaged(None, frozenset(rest.lost), rest.kept, tuple(hidden))
 
 
+def _is_name(path: Path) -> bool:
+    """Whether a name is declared there that other parts refer to."""
+    return (path[0] in _NAMED and len(path) == 2) or path[:-1] == _MEASURES
+
+
 def _is_vital(path: Path) -> bool:
     """Whether nothing useful is left without what stands there."""
     return path == () or (len(path) == 1 and path[0] in _NAMED)
@@ -105,7 +112,7 @@ class _Rest:
             holder, step = _holder(self.data, path), path[-1]
             written = as_written(path, self.kept)
             if isinstance(holder, dict) and step in holder:
-                if path[0] in _NAMED and len(path) == 2:
+                if _is_name(path):
                     self._lose(str(path[0]), str(step), holder)
                 else:
                     del holder[str(step)]

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, TypeAlias, final
 from pydantic import Field, Strict
 
 from spec_schema.starts import StartText
+from spec_schema.training import TrainingSpec
 from spec_schema.value_types import (
     Identifier,
     Name,
@@ -69,4 +70,18 @@ class ScenarioSpec(StrictModel):
         default=(),
         description="What the run must satisfy, each a sentence of signal temporal logic.",
         examples=[["always r.clearance > 1 cm", "eventually within 60 s r.lamp.light > 5 lx"]],
+    )
+    train: TrainingSpec | None = Field(
+        default=None,
+        description="How `specc train` trains an arbiter in it.",
+        examples=[
+            {
+                "arbiter": "r.choose",
+                "reward": "progress - 10 * contact",
+                "measures": {
+                    "progress": {"fall": "hypot(r.x - 5 m, r.y - 3 m)"},
+                    "contact": {"most": "r.contacts"},
+                },
+            }
+        ],
     )

@@ -95,6 +95,7 @@ def lower_arbiter(
         bindings=lower_bindings(spec, _with_choice(declared, paradigm), loaded, findings),
         judge_when=None if judge_when is None else code_of(judge_when),
         source=source_of(loaded),
+        learner=paradigm.learner,
     )
 
 

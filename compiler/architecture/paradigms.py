@@ -4,6 +4,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import final
 
+from compiler.architecture.choices import check_choice
+from compiler.architecture.learned import learned_in, learned_rules
 from compiler.architecture.leaving import check_leaving
 from compiler.architecture.library import Library
 from compiler.declare import Declarations
@@ -31,7 +33,8 @@ ZERO = Code("0.0")
 class Decided:
     """A way of deciding; of the parts, the paradigm's own is filled.
 
-    choices: of a plan in the order of its modes, else as the arbiter lists them.
+    choices: of a plan in the order of its modes, else as the arbiter lists them. learner: by what
+    its rules are learned; empty where their author wrote them.
     """
 
     paradigm: Paradigm
@@ -40,6 +43,7 @@ class Decided:
     weights: tuple[Code, ...] = ()
     competition: Competition | None = None
     plan: Program | None = None
+    learner: str = ""
 
 
 def decided(
@@ -51,12 +55,10 @@ def decided(
 ) -> Decided:
     """The paradigm of an arbiter, with a finding for each mistake in it."""
     by, choices = spec.by, spec.choices
-    if by.rules is not None:
-        rules = _rules(by.rules, "rules", spec, declared, loaded, findings)
-        return Decided(Paradigm.RULES, choices, rules=rules)
-    if by.subsumption is not None:
-        rules = _rules(by.subsumption, "subsumption", spec, declared, loaded, findings)
-        return Decided(Paradigm.SUBSUMPTION, choices, rules=rules)
+    for key, given in (("rules", by.rules), ("subsumption", by.subsumption)):
+        if given is not None:
+            rules = _rules(given, key, spec, declared, loaded, findings)
+            return Decided(Paradigm(key), choices, rules=rules)
     if by.weights is not None:
         _check_each(by.weights, choices, ("by", "weights"), "weight", findings)
         weights = _numbers(by.weights, choices, ("by", "weights"), declared, findings)
@@ -67,6 +69,10 @@ def decided(
     if by.plan is not None:
         plan, order = _plan(by.plan, spec, declared, loaded, library, findings)
         return Decided(Paradigm.PLAN, order, plan=plan)
+    learned = learned_in(by)
+    if learned is not None:
+        rules = learned_rules(*learned, spec, declared, loaded, findings)
+        return Decided(Paradigm.RULES, choices, rules=rules, learner=learned[0])
     return Decided(Paradigm.MODULE, choices)
 
 
@@ -102,8 +108,7 @@ def _rule(
     loaded: Loaded,
     findings: Findings,
 ) -> Rule:
-    if rule.choose not in spec.choices:
-        _tell_unknown(rule.choose, spec.choices, (*path, "choose"), findings)
+    check_choice(rule.choose, spec.choices, (*path, "choose"), findings)
     lasts = si_value(rule.lasts, SECOND, (*path, "lasts"), findings) or 0.0
     if lasts < 0.0:
         message = f"a rule can't last less than no time (got {rule.lasts})"
@@ -125,20 +130,12 @@ def _condition(
     return checked(text, path, scope_of(declared), ONE, "the condition", findings)
 
 
-def _tell_unknown(name: str, choices: tuple[str, ...], path: Path, findings: Findings) -> None:
-    remedy = did_you_mean(name, choices) or there_are(choices)
-    findings.error("S323", path, f"the arbiter has no choice '{name}'", remedy)
-
-
 def _check_each(
     given: Mapping[str, str], choices: tuple[str, ...], path: Path, what: str, findings: Findings
 ) -> None:
     """A finding for each choice without an expression, and for each expression of no choice."""
     for name in given:
-        if name not in choices:
-            remedy = did_you_mean(name, choices) or there_are(choices)
-            message = f"the arbiter has no choice '{name}'"
-            findings.error("S323", (*path, name), message, remedy, key=True)
+        check_choice(name, choices, (*path, name), findings, key=True)
     for name in choices:
         if name not in given:
             message = f"the choice '{name}' has no {what}"
@@ -191,10 +188,7 @@ def _competition(
     )
     rows = []
     for name in spec.suppresses:
-        if name not in choices:
-            remedy = did_you_mean(name, choices) or there_are(choices)
-            message = f"the arbiter has no choice '{name}'"
-            findings.error("S323", (*base, "suppresses", name), message, remedy, key=True)
+        check_choice(name, choices, (*base, "suppresses", name), findings, key=True)
     for name in choices:
         row = spec.suppresses.get(name, {})
         path = (*base, "suppresses", name)

@@ -26,9 +26,9 @@ def quantities_of(world: World, robots: Sequence[Robot]) -> dict[str, Measured]:
     """Every quantity of a run: of the world, then of each robot's sensors and nodes."""
     copies = [f"{s.name}_{i + 1}" for s in world.scattered for i in range(s.count)]
     things = [*(thing.name for thing in world.things), *copies]
-    found = {f"{name}.{key}": _in(unit) for name in things for key, unit in OF_THING.items()}
+    found = {f"{n}.{key}": _at(key, unit) for n in things for key, unit in OF_THING.items()}
     for robot in robots:
-        found |= {f"{robot.name}.{key}": _in(unit) for key, unit in OF_ROBOT.items()}
+        found |= {f"{robot.name}.{key}": _at(key, unit) for key, unit in OF_ROBOT.items()}
         found[f"{robot.name}.contacts"] = _in("1", kind=Kind.DISCRETE)
         for signal in robot.architecture.board:
             found[f"{robot.name}.{signal.name}"] = _in(signal.unit.text, signal.values, signal.kind)
@@ -40,5 +40,11 @@ def quantities_of(world: World, robots: Sequence[Robot]) -> dict[str, Measured]:
     return found
 
 
+def _at(key: str, unit: str) -> Measured:
+    """Where something is, or how it moves: its direction wraps."""
+    return _in(unit, kind=Kind.PERIODIC if key == "heading" else Kind.CONTINUOUS)
+
+
 def _in(unit: str, values: tuple[str, ...] = (), kind: Kind = Kind.CONTINUOUS) -> Measured:
-    return Measured(parse_unit(unit).dimension, values, kind is Kind.DISCRETE, unit)
+    dimension = parse_unit(unit).dimension
+    return Measured(dimension, values, kind is Kind.DISCRETE, unit, kind is Kind.PERIODIC)

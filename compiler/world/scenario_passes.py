@@ -1,5 +1,6 @@
 """Scenarios: robots in a world, the step of time, and what is required of the run."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import final
@@ -17,17 +18,18 @@ from compiler.architecture.times import (
 )
 from compiler.findings import Findings
 from compiler.lower_parts import origin_of
-from compiler.requirement import lower_requirement
+from compiler.requirement import Measured, lower_requirement
 from compiler.world.meeting import check_sights, check_starts
 from compiler.world.quantities_of_run import quantities_of
 from compiler.world.shapes import pose_of, positive
 from compiler.world.size import check_heights_with, is_small_enough
 from compiler.world.starts import beginnings_of
+from compiler.world.training import lower_training, read_reward
 from compiler.world.windows import check_window
 from compiler.world.world import lower_world
 from runtime.requirement import Requirement
 from runtime.scenario import Robot, Scenario, Start
-from runtime.world.model import World
+from runtime.training import Training
 from spec_schema.architecture import ArchitectureSpec
 from spec_schema.diagnostics import Diagnostic
 from spec_schema.load import Loaded
@@ -78,7 +80,9 @@ def compile_parts_of_scenario(
         check_starts(world, robots.found, findings)
         check_sights(world, robots.found, findings)
         check_heights_with(world, robots.found, findings)
-    requirements = _requirements(spec, world, robots, duration, findings)
+    known = quantities_of(world, robots.found) if world is not None and robots.is_whole else None
+    requirements = _requirements(spec, known, duration, findings)
+    training = _training(spec, known, robots.found, duration, findings)
     if world is None or not robots.is_whole or findings.has_errors:
         return None
     scenario = Scenario(
@@ -92,6 +96,7 @@ def compile_parts_of_scenario(
         beginnings=beginnings,
         requirements=requirements,
         source=origin_of(loaded),
+        training=training,
     )
     if not is_small_enough(scenario, findings):
         return None
@@ -170,11 +175,10 @@ def times_of(robot: Robot) -> list[float]:
 
 
 def _requirements(
-    spec: ScenarioSpec, world: World | None, robots: Robots, duration: float, findings: Findings
+    spec: ScenarioSpec, known: Mapping[str, Measured] | None, duration: float, findings: Findings
 ) -> tuple[Requirement, ...]:
-    if world is None or not robots.is_whole:
+    if known is None:
         return ()  # what a run has is not known
-    known = quantities_of(world, robots.found)
     found = []
     for i, text in enumerate(spec.require):
         one = lower_requirement(text, ("require", i), known, findings)
@@ -182,3 +186,18 @@ def _requirements(
             check_window(one, ("require", i), duration, findings)
             found.append(one)
     return tuple(found)
+
+
+def _training(
+    spec: ScenarioSpec,
+    known: Mapping[str, Measured] | None,
+    robots: Sequence[Robot],
+    duration: float,
+    findings: Findings,
+) -> Training | None:
+    if spec.train is None:
+        return None
+    if known is None:
+        read_reward(spec.train, findings)  # the rest is of what a run has
+        return None
+    return lower_training(spec.train, robots, known, duration, findings)
