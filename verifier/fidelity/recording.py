@@ -78,6 +78,11 @@ def _left_over(study: Study, inside: Array) -> list[Exclusion]:
     return [Exclusion("left over at the ends of stretches, where no window fits", seconds, samples)]
 
 
+def stride_of(horizon: float, period: float) -> int:
+    """Of samples so many seconds apart, each how many-th is an effective one."""
+    return max(1, round(THINNED * horizon / period))
+
+
 def _visited(program: Program, study: Study, inside: Array) -> dict[str, Array]:
     """Where the robot went inside judged windows.
 
@@ -85,7 +90,7 @@ def _visited(program: Program, study: Study, inside: Array) -> dict[str, Array]:
     that a fast sensor alone does not make a short visit a long one.
     """
     base = study.plan.samples[study.plan.needs.base]
-    stride = max(1, round(THINNED * study.plan.windows.horizon / base.distance))
+    stride = stride_of(study.plan.windows.horizon, base.distance)
     times = base.times[contains(inside, base.times)][::stride]
     assumed = zip(program.register, study.plan.model.flow.defaults, strict=True)
     columns = {name: np.full(len(times), float(value)) for name, value in assumed}

@@ -28,31 +28,33 @@ def axes_of(
     chosen = (read or list(fidelity.tolerance))[:MOST_AXES]
     bounds = fidelity.region or {name: (parts[name].low, parts[name].high) for name in chosen}
     count = CELLS.get(len(bounds), 3)
-    return tuple(_axis(parts[name], edges, count) for name, edges in bounds.items())
+    return tuple(axis_of(parts[name], edges, count) for name, edges in bounds.items())
 
 
 def coverage_of(axes: tuple[CellAxis, ...], values: Array, required: float) -> Coverage:
     """The cells that the effective samples `values` (N, d) went through."""
     shape = tuple(axis.count for axis in axes)
-    cells = _cell_of(axes, values, shape)
+    cells = cells_of(axes, values)
     samples = np.bincount(cells[cells >= 0], minlength=int(np.prod(shape))).reshape(shape)
     share = float(np.mean(samples >= ENOUGH))
     return Coverage(axes, samples, ENOUGH, share, required)
 
 
-def _axis(part: State | Control, edges: tuple[float, float], count: int) -> CellAxis:
+def axis_of(part: State | Control, edges: tuple[float, float], count: int) -> CellAxis:
+    """The axis of one quantity; a discrete one has a cell for each value."""
     if isinstance(part, State) and part.kind is Kind.DISCRETE:
         values = len(part.values)
         return CellAxis(part.name, part.unit, -0.5, values - 0.5, values, part.values)
     return CellAxis(part.name, part.unit, *edges, count)
 
 
-def _cell_of(axes: tuple[CellAxis, ...], values: Array, shape: tuple[int, ...]) -> Integers:
-    """The flat index (N,) of the cell of each point (N, d); -1 outside the region."""
+def cells_of(axes: tuple[CellAxis, ...], values: Array) -> Integers:
+    """The flat index (...) of the cell of each point (..., d); -1 outside the region."""
+    shape = tuple(axis.count for axis in axes)
     low = np.array([axis.low for axis in axes])
     high = np.array([axis.high for axis in axes])
     unit = (values - low) / (high - low)
     inside = np.all((unit >= 0.0) & (unit <= 1.0), axis=-1)
     index = np.clip((np.nan_to_num(unit) * shape).astype(np.int64), 0, np.array(shape) - 1)
-    flat = np.ravel_multi_index(tuple(index.T), shape)
+    flat = np.ravel_multi_index(tuple(np.moveaxis(index, -1, 0)), shape)
     return np.where(inside, flat, -1)

@@ -164,7 +164,7 @@ def more_data(results: Sequence[VariableResult], judged: float) -> list[str]:
     if not all(np.isfinite(result.declared.interval.high) for result in results):
         horizon = results[0].declared.horizon
         return [too_few(horizon)]
-    factors = {result.name: _more(result) for result in results}
+    factors = {result.name: times_more(result) for result in results}
     many = [result for result in results if factors[result.name] > HOPELESS]
     hopeless = [result.name for result in many if _is_near(result)]
     short = [result.name for result in many if not _is_near(result)]
@@ -203,7 +203,7 @@ def too_few(horizon: float) -> str:
     )
 
 
-def _more(result: VariableResult) -> float:
+def times_more(result: VariableResult) -> float:
     """By how much data has to be multiplied until an interval no longer holds the tolerance.
 
     Of the departure; where that is decided, of the mean in the part that departs most surely.

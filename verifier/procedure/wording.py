@@ -1,0 +1,119 @@
+"""A test procedure in words, for who drives it: values in the user's units, a run to a line."""
+
+from collections.abc import Mapping
+
+from runtime.program import Unit
+from verifier.procedure.model import Drive, Excitation, Planted, Procedure, Signal, Stage
+from verifier.report.wording import exact, listed, number, percent, quantity, seconds
+
+
+def procedure_sentences(procedure: Procedure) -> tuple[str, ...]:
+    """All of it: the runs, what to log, what the rehearsal showed, what stays open."""
+    return (
+        *run_sentences(procedure),
+        log_sentence(procedure),
+        *excited_sentences(procedure),
+        *rehearsal_sentences(procedure),
+        *procedure.remarks,
+    )
+
+
+def run_sentences(procedure: Procedure) -> tuple[str, ...]:
+    """`run 1: start at distance 0.5 m, heading -0.4 rad; run 8 s; repeat 3 times` for each run."""
+    return tuple(
+        f"run {place}: {drive_phrase(procedure, drive)}"
+        for place, drive in enumerate(procedure.drives, 1)
+    )
+
+
+def drive_phrase(procedure: Procedure, drive: Drive) -> str:
+    """One run, its stages one after the other."""
+    signals = {each.name: each for each in procedure.signals}
+    start = listed([_at(signals[n], v) for n, v in drive.start.items() if n in signals])
+    parts = [f"start at {start}" if start else "start anywhere"]
+    standing = {n: v for n, v in drive.start.items() if n in signals and signals[n].is_sensed}
+    for stage in drive.stages:
+        parts.append(_stage(stage, standing, signals))
+        standing = standing | stage.held
+    if drive.repeats > 1:
+        parts.append("twice in all" if drive.repeats == 2 else f"{drive.repeats} times in all")
+    return "; ".join(parts)
+
+
+def _stage(stage: Stage, standing: Mapping[str, float], signals: Mapping[str, Signal]) -> str:
+    """`for 6 s with speed 0.2 m/s, bringing left from 0.4 to 1.2 m`."""
+    changed = {n: v for n, v in stage.held.items() if standing.get(n) != v and n in signals}
+    held = [_at(signals[n], v) for n, v in changed.items() if not _moves(signals[n])]
+    moved = [
+        f"{n} to {exact(v, signals[n].unit)}" for n, v in changed.items() if _moves(signals[n])
+    ]
+    told = f"run {seconds(stage.seconds)}"
+    told += f" with {listed(held)}" if held else ""
+    return told + (f", bringing {listed(moved)} evenly" if moved else "")
+
+
+def _moves(signal: Signal) -> bool:
+    """Whether it is a quantity that things have to be moved for."""
+    return signal.is_sensed and not signal.values
+
+
+def _at(signal: Signal, value: float) -> str:
+    if signal.values:
+        return f"{signal.name} {signal.values[round(value)]}"
+    return f"{signal.name} {exact(value, signal.unit)}"
+
+
+def log_sentence(procedure: Procedure) -> str:
+    """What to log, how often, and how quiet sensors have to be."""
+    names = listed([each.name for each in procedure.signals])
+    noisy = [
+        f"{each.name} {quantity(each.noise, each.unit)}"
+        for each in procedure.signals
+        if each.noise > 0.0
+    ]
+    quiet = f"; sensors no noisier (standard deviation) than {listed(noisy)}" if noisy else ""
+    return f"log {names} at {number(procedure.rate)} Hz{quiet}"
+
+
+def excited_sentences(procedure: Procedure) -> tuple[str, ...]:
+    """By how much each input shows."""
+    units = {each.name: each.unit for each in procedure.signals}
+    return tuple(
+        _excited(each, units[each.name]) for each in procedure.excited if each.name in units
+    )
+
+
+def _excited(each: Excitation, unit: Unit) -> str:
+    return (
+        f"{each.name} from {exact(each.low, unit)} to {exact(each.high, unit)} moves what is judged"
+        f" by {number(each.effect)} tolerances within {WITHIN}"
+    )
+
+
+WITHIN = "the horizon"
+"""The time over which tolerances are stated."""
+
+
+def rehearsal_sentences(procedure: Procedure) -> tuple[str, ...]:
+    """What the verifier said of the procedure before anybody drove it."""
+    found = procedure.rehearsal
+    if found is None:
+        return ()
+    region = ""
+    if procedure.required:
+        region = (
+            f" ({percent(found.share)} of the region seen, {percent(procedure.required)} asked)"
+        )
+    told = (
+        f"rehearsed in simulation with that noise, a faithful robot gets"
+        f" {found.verdict.upper()}{region}"
+    )
+    units = {each.name: each.unit for each in procedure.signals}
+    return (told, *(_planted(each, units[each.variable]) for each in found.planted))
+
+
+def _planted(each: Planted, unit: Unit) -> str:
+    return (
+        f"one whose {each.variable} is carried {quantity(each.departure, unit)} away within"
+        f" {WITHIN} gets {each.verdict.upper()}"
+    )
