@@ -37,11 +37,15 @@ def save(learner: Saved, path: str | Path) -> None:
     """Write all that a learner is; the file is whole, or as it was before.
 
     Raises:
-        LearnerError: its source of chance is of a kind that is not kept.
+        LearnerError: its source of chance is of a kind that is not kept, or the path is a folder
+            or in none.
         OSError: the file can't be written.
     """
-    content = as_bytes(learner.state())
     target = Path(path)
+    _refuse_folder(target)
+    if not target.parent.is_dir():
+        raise LearnerError(f"{target.parent} is no folder: make it first, or name another file")
+    content = as_bytes(learner.state())
     beside = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         with beside.open("wb") as file:
@@ -67,13 +71,20 @@ def load_one_of(kinds: Mapping[str, Callable[[State], Any]], path: str | Path) -
     """What was saved there, made as is said for its kind.
 
     Raises:
-        LearnerError: the file is damaged, of none of these kinds, or of another version.
+        LearnerError: the file is damaged, of none of these kinds, or of another version, or it is
+            a folder.
         OSError: there is no such file, or it can't be read.
     """
+    _refuse_folder(Path(path))
     try:
         return _made(kinds, from_bytes(Path(path).read_bytes()))
     except LearnerError as error:
         raise LearnerError(f"{path} holds no learner that can be used: {error}") from error
+
+
+def _refuse_folder(path: Path) -> None:
+    if path.is_dir():
+        raise LearnerError(f"{path} is a folder: name a file in it, such as {path / 'learner.npz'}")
 
 
 def _made(kinds: Mapping[str, Callable[[State], Any]], state: State) -> Any:

@@ -116,6 +116,20 @@ def test_a_file_is_whole_or_as_it_was_before(
     assert [each.name for each in tmp_path.iterdir()] == ["learner"]
 
 
+def test_a_folder_is_no_file_to_save_to_or_load_from(tmp_path: Path) -> None:
+    learner = ALCSR(2, 2, seed=3)
+    with pytest.raises(
+        LearnerError, match=r"is a folder: name a file in it, such as .*learner.npz"
+    ):
+        save(learner, tmp_path)
+    with pytest.raises(LearnerError, match="is a folder: name a file in it"):
+        load(tmp_path)
+    with pytest.raises(LearnerError, match="none is no folder: make it first"):
+        save(learner, tmp_path / "none" / "learner.npz")
+
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_numpy_reads_the_arrays_of_the_file(tmp_path: Path) -> None:
     learner = ALCSR(2, 2, seed=3)
     learner.run(*problems())
