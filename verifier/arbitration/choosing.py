@@ -48,7 +48,7 @@ class RuleChooser:
         chosen = np.full(decisions.times.shape, NONE)
         for place in reversed(range(len(self.opened.rules))):
             rule = self.opened.rules[place]
-            holds = _latched(rule, truths[:, 2 * place], truths[:, 2 * place + 1], decisions.times)
+            holds = latched(rule, truths[:, 2 * place], truths[:, 2 * place + 1], decisions.times)
             chosen[holds] = rule.choice
         return chosen
 
@@ -74,7 +74,7 @@ def rule_chooser(
     return RuleChooser(opened, arbiter.register, values)
 
 
-def _latched(rule: Rule, when: Booleans, until: Booleans, times: Array) -> Booleans:
+def latched(rule: Rule, when: Booleans, until: Booleans, times: Array) -> Booleans:
     """Where the rule holds: from `when` on, until it is released, and for at least `lasts`."""
     released = ~when if rule.until is None else ~when & until
     if rule.lasts > 0.0:

@@ -199,16 +199,23 @@ def examine_decisions(
     depth: Depth = "all",
 ) -> Examination:
     """The arbiter judged at each of its ticks at which it was free to choose."""
+    own, trace = decision_log(arbiter, record, source)
+    made = judge_arbiter(own, trace, running, depth=depth)
+    origins = {"fidelity": made.section.origin}
+    return Examination(made.report, origins=origins, arbitration=made.section)
+
+
+def decision_log(arbiter: Arbiter, record: NodeRecord, source: str) -> tuple[Arbiter, Trace]:
+    """The record of an arbiter as a log, and the arbiter as one that is judged by it.
+
+    Its own `judge_when` is for other logs; times count from its first tick, the trace's start.
+    """
     assert record.chosen is not None, "an arbiter chooses"
     chosen = np.where(record.free, record.chosen, -1.0)
     names = [*(read.name for read in arbiter.reads), *(each.name for each in arbiter.controls)]
     series = {name: _series(name, record, {}) for name in names if name in record.columns}
     series[CHOICE] = Series(CHOICE, record.times, chosen, f"{record.name}.{CHOICE}", TICKS)
-    own = replace(arbiter, judge_when=None)
-    trace = _trace(series, record, source)
-    made = judge_arbiter(own, trace, running, depth=depth)
-    origins = {"fidelity": made.section.origin}
-    return Examination(made.report, origins=origins, arbitration=made.section)
+    return replace(arbiter, judge_when=None), _trace(series, record, source)
 
 
 def _series(name: str, record: NodeRecord, periods: dict[str, float]) -> Series:
