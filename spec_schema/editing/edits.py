@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TypeAlias, final
 
+from spec_schema.node import Plain
 from spec_schema.places import Path
 
 
@@ -38,7 +39,20 @@ class NewKey:
     bare: str = ""
 
 
-Edit: TypeAlias = NewNumber | NewText | NewKey
+@final
+@dataclass(frozen=True, slots=True)
+class NewLines:
+    """Other content at `path`, in lines of its own below its key; comments beside the key stay.
+
+    lines: without the indent that they get. data: what is to be read of them.
+    """
+
+    path: Path
+    lines: tuple[str, ...]
+    data: Plain
+
+
+Edit: TypeAlias = NewNumber | NewText | NewKey | NewLines
 
 
 @final

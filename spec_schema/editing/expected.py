@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-from spec_schema.editing.edits import Edit, NewKey, NewNumber
+from spec_schema.editing.edits import Edit, NewKey, NewLines, NewNumber
 from spec_schema.node import Plain
 from spec_schema.places import Path
 from spec_schema.scalars import resolve
@@ -36,6 +36,8 @@ def _changed(data: Plain, path: Path, edit: Edit) -> Plain:
 
 
 def _value(old: Plain, edit: Edit) -> Plain:
+    if isinstance(edit, NewLines):
+        return edit.data
     if isinstance(edit, NewKey):
         return resolve(edit.text)
     if not isinstance(edit, NewNumber):

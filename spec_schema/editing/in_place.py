@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Final, final
 
 from spec_schema.diagnostics import SpecError
-from spec_schema.editing.edits import Edit, EditError, NewKey, NewNumber, NewText
+from spec_schema.editing.edits import Edit, EditError, NewKey, NewLines, NewNumber, NewText
 from spec_schema.editing.expected import after
 from spec_schema.node import Listing, Mapping, Node, Scalar, plain
 from spec_schema.places import Path
@@ -95,6 +95,11 @@ class _Page:
                     raise EditError(path, "it does not stand in the text")
         return node
 
+    def end_of_line(self, index: int) -> int:
+        """Where the line of an index ends, before what ends it."""
+        found = LINE_END.search(self.source.text, index)
+        return found.start() if found else len(self.source.text)
+
     def line_of(self, index: int) -> int:
         """The number, from 0, of the line that an index lies in."""
         return bisect_right(self.lines, index) - 1
@@ -106,7 +111,9 @@ class _Page:
         return found.group() if found else "\n"
 
 
-def _spot(page: _Page, edit: NewNumber | NewText) -> _Spot:
+def _spot(page: _Page, edit: NewNumber | NewText | NewLines) -> _Spot:
+    if isinstance(edit, NewLines):
+        return _lines(page, edit)
     node = page.node(edit.path)
     if not isinstance(node, Scalar):
         raise EditError(edit.path, "it is no single value")
@@ -122,6 +129,26 @@ def _spot(page: _Page, edit: NewNumber | NewText) -> _Spot:
     if found is None:
         raise EditError(edit.path, "it does not begin with a number")
     return _Spot(start + found.start(), start + found.end(), edit.number)
+
+
+def _lines(page: _Page, edit: NewLines) -> _Spot:
+    """What replaces a value by lines below its key; what stands behind a value in one line stays.
+
+    Lines between a key and what it holds stay, and those within what is replaced go with it.
+    """
+    parent = page.node(edit.path[:-1])
+    if not isinstance(parent, Mapping) or edit.path[-1] not in parent.entries:
+        raise EditError(edit.path, "it does not stand in the text")
+    entry = parent.entries[str(edit.path[-1])]
+    (start, end), text = page.ends(entry.value.span), page.source.text
+    indent = " " * (entry.key.column + 1)
+    lines = page.line_end.join(indent + line for line in edit.lines)
+    last = page.end_of_line(end)
+    if entry.value.span.line > entry.key.line:
+        return _Spot(page.lines[page.line_of(start)], last, lines)
+    behind = text[end:last].strip()
+    start = len(text[:start].rstrip())
+    return _Spot(start, last, f"{' ' * bool(behind)}{behind}{page.line_end}{lines}")
 
 
 def _keys(page: _Page, edits: tuple[NewKey, ...]) -> _Spot:
