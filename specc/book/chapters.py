@@ -19,6 +19,14 @@ class Paragraph:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Heading:
+    """A title within a section."""
+
+    text: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Bullets:
     """A list; is_ordered: of steps, in order."""
 
@@ -39,10 +47,15 @@ class Table:
 @final
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture of the book, by its name in `figures/`; caption: how to read it."""
+    """A picture of the book, by its name in `figures/`; caption: how to read it.
+
+    alt: what it shows, to those who can't see it. width: of the PDF's text width, at most.
+    """
 
     name: str
     caption: str
+    alt: str
+    width: float = 1.0
 
 
 @final
@@ -62,7 +75,7 @@ class Listing:
     language: str
 
 
-Block: TypeAlias = Paragraph | Bullets | Table | Figure | Formulas | Listing
+Block: TypeAlias = Heading | Paragraph | Bullets | Table | Figure | Formulas | Listing
 
 
 @final

@@ -3,25 +3,27 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias, final
+from typing import Final, TypeAlias, final
 
 from runtime import architecture_artifact, scenario_artifact
 from runtime.architecture import Architecture, Node
-from runtime.program import Program
 from runtime.scenario import Scenario
 from runtime.world.model import Body
 from spec_schema.diagnostics import Diagnostic
 from specc import loading
-from specc.book.manifest import Setting
+from specc.book.manifest import ARTIFACTS, Setting
 from specc.book.origins import renamed
-from specc.book.settings import settings_of
+from specc.book.settings import DEFAULT, settings_of
 from specc.book.sources import Sources, sources_of
 from specc.book.tables import Sheet, sheets_of
+from specc.book.views import View, views_of
 from specc.faults import fault
-from specc.portraying import portrait
-from verifier.topology.features import Portrait
+from specc.scenarios.simulating import Simulation, simulate_scenario
+from verifier.report.requirement_results import RequirementResult
 
 Progress: TypeAlias = Callable[[str, int, int], None]
+LIGHT: Final = 1.0
+"""Seconds between two pictures of the light on the floor."""
 
 
 @final
@@ -31,7 +33,7 @@ class Shown:
 
     node: Node
     settings: tuple[Setting, ...] = ()
-    portraits: tuple[tuple[Setting, Portrait], ...] = ()
+    portraits: tuple[View, ...] = ()
     sheets: tuple[Sheet, ...] = ()
 
 
@@ -52,7 +54,8 @@ class Drawn:
 class Contents:
     """A book's contents. Every file in what was compiled is named as it is in the book.
 
-    scenario: None of the book of an architecture. artifact: its bytes.
+    scenario: None of the book of an architecture. run: of the scenario, with its own seed.
+    artifact: its bytes.
     """
 
     name: str
@@ -61,6 +64,7 @@ class Contents:
     sources: Sources
     artifact: bytes
     scenario: Scenario | None
+    run: Simulation | None
     architectures: tuple[Drawn, ...]
     warnings: tuple[Diagnostic, ...]
 
@@ -68,6 +72,16 @@ class Contents:
     def kind(self) -> str:
         """What the book is of."""
         return "architecture" if self.scenario is None else "scenario"
+
+    @property
+    def artifact_name(self) -> str:
+        """The file of its program."""
+        return ARTIFACTS[self.kind]
+
+    @property
+    def results(self) -> tuple[RequirementResult, ...]:
+        """What the run showed of each requirement."""
+        return () if self.run is None else self.run.requirements
 
 
 def gathered(path: Path, progress: Progress, *, allow_code: bool = False) -> Contents:
@@ -97,6 +111,7 @@ def _of_architecture(path: Path, progress: Progress, *, allow_code: bool) -> Con
         sources=sources,
         artifact=architecture_artifact.to_bytes(architecture, body),
         scenario=None,
+        run=None,
         architectures=(drawn(architecture, body, made.notes, (), progress),),
         warnings=made.warnings,
     )
@@ -117,6 +132,9 @@ def _of_scenario(path: Path, progress: Progress, *, allow_code: bool) -> Content
         sources=sources,
         artifact=scenario_artifact.to_bytes(scenario),
         scenario=scenario,
+        run=simulate_scenario(
+            made.scenario, allow_code=allow_code, light_every=LIGHT, progress=progress
+        ),
         architectures=tuple(
             drawn(first[file].architecture, first[file].body, (), tuple(robots), progress)
             for file, robots in alike.items()
@@ -136,25 +154,26 @@ def drawn(
     nodes = []
     for done, node in enumerate(architecture.nodes):
         progress(f"looking at {node.name}", done, len(architecture.nodes))
-        if node.behavior < 0:
-            nodes.append(Shown(node))
-            continue
-        nodes.append(_behavior(architecture, node))
+        nodes.append(_shown(architecture, node))
     return Drawn(architecture, body, notes, robots, tuple(nodes))
+
+
+def _shown(architecture: Architecture, node: Node) -> Shown:
+    if node.behavior >= 0:
+        return _behavior(architecture, node)
+    plan = architecture.arbiters[node.arbiter].plan if node.arbiter >= 0 else None
+    if plan is None:
+        return Shown(node)
+    held = {control.name: control.default for control in plan.controls}
+    return Shown(node, portraits=views_of(plan, Setting(DEFAULT, (), held)))
 
 
 def _behavior(architecture: Architecture, node: Node) -> Shown:
     program = architecture.programs[node.behavior]
     settings, wired = settings_of(architecture, node)
     sheets: list[Sheet] = []
-    portraits: list[tuple[Setting, Portrait]] = []
+    views: list[View] = []
     for setting in settings:
         sheets += sheets_of(program, setting.name, setting.controls, wired)
-        portraits.append((setting, _portrait(program, setting)))
-    return Shown(node, settings, tuple(portraits), tuple(sheets))
-
-
-def _portrait(program: Program, setting: Setting) -> Portrait:
-    units = {control.name: control.unit.scale for control in program.controls}
-    held = {name: value / units[name] for name, value in setting.controls.items()}
-    return portrait(program, None, held)
+        views += views_of(program, setting)
+    return Shown(node, settings, tuple(views), tuple(sheets))

@@ -1,25 +1,19 @@
 """A book, from a spec to its folder."""
 
-from importlib.resources import files
 from pathlib import Path
-from typing import Final
 
 from specc import __version__
 from specc.book import manifest
 from specc.book.contents import Contents, Progress, gathered
 from specc.book.entries import architecture_entry
 from specc.book.folder import MANIFEST, refuse_early, write_folder
-from specc.book.manifest import Book
+from specc.book.illustrations import figures_of
+from specc.book.manifest import Book, Required
 from specc.book.naming import Names, names_of
+from specc.book.reader import READER, reader_text
 from specc.book.tables import as_csv, as_npz
-from specc.book.words import chapters_of
-from specc.figures.palettes import PALETTES
-from specc.figures.portrait import draw_portrait
-from specc.figures.style import rendered
-from specc.figures.style_names import Style
+from specc.book.words.all import chapters_of
 from specc.pages.book_page import book_pages
-
-READER: Final = "data/read_table.py"
 
 
 def export_book(
@@ -47,11 +41,11 @@ def files_of(contents: Contents, progress: Progress) -> dict[str, bytes]:
     names = names_of(contents)
     found = {name: path.read_bytes() for path, name in contents.sources.names.items()}
     found[manifest.ARTIFACTS[contents.kind]] = contents.artifact
-    found[READER] = files("specc.book").joinpath("read_table.py").read_bytes()
+    found[READER] = reader_text().encode()
     found |= _data(contents, names)
-    found |= _figures(contents, names, progress)
+    found |= figures_of(contents, names, progress)
     chapters = chapters_of(contents, names)
-    found |= book_pages(contents.name, chapters)
+    found |= book_pages(contents.name, chapters, frozenset((*found, MANIFEST)))
     book = _book(contents, names, found)
     return {MANIFEST: manifest.to_bytes(book), **found}
 
@@ -67,20 +61,6 @@ def _data(contents: Contents, names: Names) -> dict[str, bytes]:
     return found
 
 
-def _figures(contents: Contents, names: Names, progress: Progress) -> dict[str, bytes]:
-    """Every figure twice: for light and for dark pages."""
-    found = {}
-    for of in contents.architectures:
-        for done, shown in enumerate(of.nodes):
-            progress(f"drawing {shown.node.name}", done, len(of.nodes))
-            for k, (_, portrait) in enumerate(shown.portraits):
-                name = names.portrait(of.architecture, shown.node, k)
-                for style, end in ((Style.SCREEN, ".svg"), (Style.DARK, ".dark.svg")):
-                    picture = draw_portrait(portrait, style)
-                    found[f"figures/{name}{end}"] = rendered(picture, "svg", PALETTES[style])
-    return found
-
-
 def _book(contents: Contents, names: Names, found: dict[str, bytes]) -> Book:
     return Book(
         kind=contents.kind,
@@ -91,6 +71,8 @@ def _book(contents: Contents, names: Names, found: dict[str, bytes]) -> Book:
         artifact=manifest.ARTIFACTS[contents.kind],
         seed=None if contents.scenario is None else contents.scenario.seed,
         architectures=tuple(architecture_entry(of, names) for of in contents.architectures),
-        requirements=(),
+        requirements=tuple(
+            Required(each.text, str(each.outcome), each.sentence) for each in contents.results
+        ),
         files=tuple(manifest.file_entry(path, data) for path, data in sorted(found.items())),
     )

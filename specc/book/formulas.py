@@ -33,9 +33,13 @@ def written(code: Code, labels: Mapping[str, tuple[str, ...]] = NO_LABELS) -> st
 
 def of_tree(tree: Expr, labels: Mapping[str, tuple[str, ...]] = NO_LABELS) -> str:
     """The same of a tree."""
-    text = to_text(_labelled(tree, labels))
+    return plain(to_text(_labelled(tree, labels)))
+
+
+def plain(text: str) -> str:
+    """An expression of the language with the signs of print."""
     text = text.replace("<=", "≤").replace(">=", "≥").replace("==", "=").replace("!=", "≠")
-    return POWER.sub("^", text).replace("*", "·").replace("-", "−")
+    return POWER.sub("^", text).replace(" * ", "·").replace("*", "·").replace("-", "−")
 
 
 def in_mode(code: Code, name: str, index: int) -> Expr:

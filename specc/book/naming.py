@@ -1,10 +1,15 @@
 """What the files of a book are called: for each node a page, its data and its figures."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 from runtime.architecture import Architecture, Node
 from specc.book.contents import Contents, Shown
+
+RUN: Final = "run"
+"""The figure of the scenario's run."""
+RESERVED: Final = frozenset({"index", "building", "scenario", "architecture", RUN})
+"""Pages and figures that are of no node."""
 
 
 @final
@@ -16,11 +21,16 @@ class Names:
 
     def stem(self, made: Architecture, node: Node) -> str:
         """The name of a node's page."""
-        return f"{made.name}.{node.name}" if self.many else node.name
+        own = f"module.{node.name}" if node.name in RESERVED else node.name
+        return f"{made.name}.{own}" if self.many else own
 
     def overview(self, made: Architecture) -> str:
         """The name of an architecture's own page."""
         return f"architecture.{made.name}" if self.many else "architecture"
+
+    def wiring(self, made: Architecture) -> str:
+        """The figure of its wiring."""
+        return f"{self.overview(made)}-wiring"
 
     def page(self, made: Architecture, node: Node) -> str:
         """The HTML of a node."""

@@ -1,0 +1,269 @@
+"""The page of a behavior: everything that whoever builds it has to know."""
+
+from collections.abc import Iterator
+
+from runtime.architecture import Architecture, Node
+from runtime.program import Guard, Program, Role, State
+from spec_schema.field_modes import Modes
+from specc.book.chapters import (
+    Block,
+    Bullets,
+    Chapter,
+    Figure,
+    Formulas,
+    Heading,
+    Paragraph,
+    Section,
+    Table,
+)
+from specc.book.contents import Drawn, Shown
+from specc.book.formulas import in_mode, labels_of, of_tree, plain, written
+from specc.book.naming import Names
+from specc.book.tables import per_second
+from specc.book.words.acting import acting_section, timing_sentences
+from specc.book.words.data import data_section
+from specc.book.words.faithful import faithful_section
+from specc.book.words.quantities import NOTHING, SECOND, exact, range_of, unit_of
+from specc.book.words.source import author_words, behavior_spec, spec_section
+from specc.book.words.topology import topology_blocks
+from specc.book.words.wiring import source_of
+from specc.figures.quantities import rate_of
+
+ROLES = {
+    Role.SENSED: "sensed",
+    Role.DRIVEN: "driven",
+    Role.BOTH: "sensed and driven",
+}
+
+
+def behavior_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
+    """The page of a node that runs a behavior."""
+    node, made = shown.node, of.architecture
+    program = made.programs[node.behavior]
+    called = "" if program.name == node.name else f" Its spec calls it `{program.name}`."
+    sections = (
+        _purpose(program, node, called),
+        Section("State variables", tuple(_states(program, made, node, names))),
+        Section("Control interface", tuple(_controls(program, made, node, names))),
+        Section("The field", tuple(_field(program))),
+        data_section(of, shown, names),
+        Section("Phase portraits", tuple(_portraits(program, shown, made, names))),
+        acting_section(of, node, names),
+        faithful_section(program),
+        spec_section(program.source),
+    )
+    return Chapter(
+        names.stem(made, node),
+        "base behavior" if node.level == 0 else f"behavior, level {node.level}",
+        node.name,
+        program.about,
+        tuple(section for section in sections if section.blocks),
+    )
+
+
+def _purpose(program: Program, node: Node, called: str) -> Section:
+    blocks: list[Block] = []
+    words = author_words(program.source.text)
+    if words:
+        blocks.append(Paragraph(words))
+    moved = [state for state in program.states if state.is_driven]
+    names = ", ".join(f"`{state.name}`" for state in moved)
+    blocks.append(
+        Paragraph(
+            f"It is to move {names} as this page says, whatever sensors, motors and programs bring"
+            f" that about.{called} {timing_sentences(node)}"
+        )
+    )
+    return Section("What it does", tuple(blocks))
+
+
+def _states(program: Program, made: Architecture, node: Node, names: Names) -> Iterator[Block]:
+    rows = tuple(
+        (
+            f"`{state.name}`",
+            _relates(state),
+            range_of(state),
+            ROLES[state.role],
+            source_of(made, node, state, names) if _is_read(state, node) else _kept(state, program),
+        )
+        for state in program.states
+    )
+    yield Table(("state", "relates", "range", "role", "comes from"), rows)
+    told = [f"`{state.name}`: {state.about}." for state in program.states if state.about]
+    if told:
+        yield Bullets(tuple(told))
+    closures = tuple(
+        (rate_of(state.name), written(state.closure, labels_of(program)), "assumed, not promised")
+        for state in program.states
+        if state.closure is not None
+    )
+    if closures:
+        yield Paragraph(
+            "What is only sensed is moved by the world. Where the behavior is looked at alone, its"
+            " author assumes of it:"
+        )
+        yield Formulas(closures)
+
+
+def _relates(state: State) -> str:
+    agent, environment = state.relates
+    return f"{agent} ↔ {environment}" if agent else NOTHING
+
+
+def _is_read(state: State, node: Node) -> bool:
+    return any(wire.entry == state.name for wire in node.inputs)
+
+
+def _kept(state: State, program: Program) -> str:
+    if state.name == program.field.mode:
+        return "its own memory: the mode it is in"
+    return "its own memory" if state.is_driven else f"nobody: {exact(state.hold, state.unit)}"
+
+
+def _controls(program: Program, made: Architecture, node: Node, names: Names) -> Iterator[Block]:
+    if program.controls:
+        rows = tuple(
+            (
+                f"`{control.name}`",
+                range_of(control),
+                exact(control.default, control.unit),
+                source_of(made, node, control, names),
+                control.about or NOTHING,
+            )
+            for control in program.controls
+        )
+        yield Paragraph("Control parameters are set from outside, each by itself.")
+        yield Table(("control", "range", "default", "set here to", "what it does"), rows)
+    if program.constants:
+        constants = tuple(
+            (f"`{c.name}`", exact(c.value, c.unit), c.about or NOTHING) for c in program.constants
+        )
+        yield Paragraph("Constants are part of the behavior; nobody sets them.")
+        yield Table(("constant", "value", "what it is"), constants)
+    if program.outputs:
+        labels = labels_of(program)
+        yield Paragraph("Outputs are what others may read of it, or what it asks of the body.")
+        yield Formulas(
+            tuple(
+                (o.name, written(o.code, labels), _remark(unit_of(o.unit), o.about))
+                for o in program.outputs
+            )
+        )
+
+
+def _remark(unit: str, about: str) -> str:
+    told = [f"in {unit}"] if unit != NOTHING else []
+    return "; ".join((*told, *([about] if about else [])))
+
+
+def _field(program: Program) -> Iterator[Block]:
+    field = program.field
+    if field.formula is None:
+        yield Paragraph(
+            f"The field is given as {FORMS.get(field.form, field.form)}: its numbers are in the"
+            " tables of this book, and how it looks is in the portraits below."
+        )
+    elif field.mode:
+        yield from _modes(program)
+    else:
+        yield Formulas(tuple(_rates(program)))
+    if field.is_map:
+        yield Paragraph(
+            f"It moves in steps of {exact(field.every, SECOND)}: the formulas give each state one"
+            " step later."
+        )
+    if program.noise:
+        labels = labels_of(program)
+        rows = tuple(
+            (each.state, written(each.size, labels), "standard deviation that adds up in 1 s")
+            for each in program.noise
+        )
+        yield Paragraph(
+            "Chance is part of it: beside the field, white noise moves these states. What it adds"
+            " up to grows with the square root of time."
+        )
+        yield Formulas(rows)
+    if field.formula is not None:
+        yield Paragraph(
+            "In formulas every name stands for its value in SI (angles in radians), numbers too;"
+            " `where(c, a, b)` is a where c holds, else b.",
+            is_small=True,
+        )
+
+
+FORMS = {
+    "arrows": "arrows that its author sketched, filled between by the compiler",
+    "grid": "numbers on a grid",
+    "module": "a program of its author's",
+    "sketch": "features that its author drew, filled between by the compiler",
+}
+
+
+def _rates(program: Program, index: int = -1) -> Iterator[tuple[str, str, str]]:
+    labels, field = labels_of(program), program.field
+    units = {state.name: state.unit for state in program.states}
+    for name, code in zip(field.driven, field.formula or (), strict=False):
+        left = f"{name} next" if field.is_map else rate_of(name)
+        shown = written(code, labels)
+        if index >= 0:
+            shown = of_tree(in_mode(code, field.mode, index), labels)
+        unit = units[name].text
+        remark = f"in {unit}" if field.is_map else f"in {per_second(unit)}"
+        yield (left, shown, remark)
+
+
+def _modes(program: Program) -> Iterator[Block]:
+    field = program.field
+    values = next(s.values for s in program.states if s.name == field.mode)
+    yield Paragraph(
+        f"It has a memory: `{field.mode}` is the mode that it is in, one of"
+        f" {', '.join(f'`{v}`' for v in values)}. Each mode has a field of its own, and is left as"
+        " soon as one of its conditions holds; between two ticks too."
+    )
+    for index, value in enumerate(values):
+        yield Heading(f"While `{field.mode}` is `{value}`")
+        yield Formulas(tuple(_rates(program, index)))
+        ways = tuple(mode_ways(program, index, values))
+        yield Bullets(ways or ("It is never left.",))
+
+
+def mode_ways(program: Program, index: int, values: tuple[str, ...]) -> Iterator[str]:
+    """How a mode is left, a sentence for each way."""
+    guards = [guard for guard in program.field.guards if guard.mode == index]
+    own = _conditions(program, values[index])
+    for k, guard in enumerate(guards):
+        when = own[k] if k < len(own) else f"{written(guard.condition)} ≥ 0"
+        yield f"to `{values[guard.target]}` where `{when}`{_resets(program, guard)}"
+
+
+def _conditions(program: Program, mode: str) -> list[str]:
+    """The conditions of the ways out of a mode, as their author wrote them."""
+    spec = behavior_spec(program)
+    form = spec.field.form if spec is not None else None
+    if not isinstance(form, Modes) or mode not in form.each:
+        return []
+    return [plain(way.when) for way in form.each[mode].leave]
+
+
+def _resets(program: Program, guard: Guard) -> str:
+    labels = labels_of(program)
+    told = ", ".join(f"{name} := {written(code, labels)}" for name, code in guard.resets)
+    return f"; then `{told}`" if told else ""
+
+
+def _portraits(program: Program, shown: Shown, made: Architecture, names: Names) -> Iterator[Block]:
+    for k, view in enumerate(shown.portraits):
+        yield Heading(view.title)
+        caption = HOW_TO_READ if k == 0 else ""
+        alt = f"phase portrait of {program.name}: {view.title}"
+        yield Figure(names.portrait(made, shown.node, k), caption, alt, PORTRAIT)
+        yield from topology_blocks(view.portrait)
+
+
+PORTRAIT = 0.8
+"""Of the width of a page of the PDF."""
+HOW_TO_READ = (
+    "Lines follow the field, darker where it is faster; dots are fixed points (full: they attract),"
+    " thick closed lines are cycles, tinted areas are basins of attraction. States that are not on"
+    " the axes are held at the values written above."
+)

@@ -1,0 +1,62 @@
+"""The section that says which tables the book has of a behavior, and how they are read."""
+
+from specc.book.chapters import Block, Listing, Paragraph, Section, Table
+from specc.book.contents import Drawn, Shown
+from specc.book.naming import Names
+from specc.book.tables import PROBES, Sheet
+from specc.book.words.quantities import NOTHING, listed
+from specc.figures.quantities import number
+
+
+def data_section(of: Drawn, shown: Shown, names: Names) -> Section:
+    """Which tables there are, over what, and how far they are from the program."""
+    if not shown.sheets:
+        return Section("The same as numbers", ())
+    npz, text = names.data(of.architecture, shown.node)
+    rows = tuple(_row(sheet) for sheet in shown.sheets)
+    blocks: list[Block] = [
+        Paragraph(
+            f"[{text}]({text}) and [{npz}]({npz}) hold the field and the outputs as tables, in the"
+            " spec's own units, for the values of the controls that this architecture sets."
+            " Between the nodes go on linearly, each axis after the other, as"
+            " [data/read_table.py](data/read_table.py) does in ten lines:"
+        ),
+        Listing(_example(npz, shown.sheets[0]), "python"),
+        Table(("quantity", "setting", "over", "nodes", "unit", "off by at most"), rows, (3, 5)),
+        Paragraph(
+            "A discrete state is given as its index (0 for the first of its values). How far a"
+            f" table is off was measured at {PROBES} random places; the share is of the largest"
+            " value seen there.",
+            is_small=True,
+        ),
+    ]
+    return Section("The same as numbers", tuple(blocks))
+
+
+def _row(sheet: Sheet) -> tuple[str, ...]:
+    nodes = " × ".join(str(len(own)) for own in sheet.nodes) or "1"
+    share = f" ({number(100.0 * sheet.error / sheet.size, 2)} %)" if sheet.size > 0.0 else ""
+    unit = NOTHING if sheet.unit in {"", "1"} else sheet.unit
+    return (
+        f"`{sheet.quantity}`",
+        f"`{sheet.setting}`",
+        listed((f"`{name}`" for name in sheet.axes), "constant"),
+        nodes,
+        unit,
+        f"{number(sheet.error, 2)}{share}",
+    )
+
+
+def _example(npz: str, sheet: Sheet) -> str:
+    """A call with the middle of each axis, and what it gives."""
+    at = {n: float(own[len(own) // 2]) for n, own in zip(sheet.axes, sheet.nodes, strict=True)}
+    middle = sheet.values[tuple(len(own) // 2 for own in sheet.nodes)]
+    places = ", ".join(f'"{name}": {value:.6g}' for name, value in at.items())
+    file = npz.partition("/")[2]
+    setting = "" if sheet.setting == "default" else f', "{sheet.setting}"'
+    unit = "" if sheet.unit in {"", "1"} else f" {sheet.unit}"
+    return (
+        "from read_table import value\n\n"
+        f'value("{file}", "{sheet.quantity}", {{{places}}}{setting})'
+        f"  # {float(middle):.6g}{unit}"
+    )
