@@ -31,8 +31,8 @@ from spec_schema.scenario import ScenarioSpec
 from tests.study.paradigms import Account
 
 SCENARIOS: Final = Path(__file__).parents[2] / "specs" / "scenarios"
-WAYS: Final = ("rules",)
-LAMP: Final = (5.3, 3.4)
+WAYS: Final = ("rules", "random")
+LAMP: Final = (5.4, 3.4)
 THERE: Final = 0.4
 """Metres from the lamp: reached."""
 FLAT: Final = 0.99
