@@ -1,7 +1,6 @@
 """What each action is worth where rewards come late: fitted Q iteration over all that was lived.
 
-Source: Ernst, Geurts and Wehenkel (2005); the regression is that of `lcs.steps`, boxes that divide
-at random, which settle whatever they hold (Gordon 1995).
+Source: Ernst, Geurts and Wehenkel (2005).
 """
 
 from typing import Final
@@ -9,35 +8,31 @@ from typing import Final
 import numpy as np
 
 from lcs.arrays import Array
+from lcs.given import inputs_of
+from lcs.policies.kernels.fitting import Lived, Numbers, fitted
 from lcs.policies.steps import Steps
-from lcs.steps.config import Config
-from lcs.steps.learner import StepsLearner
 
-FAMILIES: Final = 10
+FAMILIES: Final = 20
+"""Trees of each action, which expect their mean together."""
 FED: Final = 10
-"""Of the boxes: how many divisions vote together, and how many steps of an action one box needs."""
-GENERATIONS: Final = 3
+"""Steps in a leaf, at least."""
+GENERATIONS: Final = 4
+"""How often trees grow, each time for what those before expected."""
 
 
 def worth_of(lived: Steps, actions: int, discount: float, seed: int) -> Array:
     """What each action is worth at each of the places lived.x, (D, A).
 
-    What was never tried anywhere near is worth as little as the least.
+    What was never taken is worth as little as the least.
 
     Raises:
         LearnerError: something is not finite.
     """
-    config = Config(
-        discount=discount,
-        memories=len(lived),
-        fed=FED,
-        families=FAMILIES,
-        generations=GENERATIONS,
+    n = lived.x.shape[1]
+    steps = Lived(
+        inputs_of(lived.x, n), lived.action, lived.reward, inputs_of(lived.after, n), lived.ends
     )
-    learner = StepsLearner(actions, lived.x.shape[1], config, seed=seed)
-    learner.remember(lived.x, lived.action, lived.reward, lived.after, lived.ends)
-    learner.grow()
-    worth = learner.decide(lived.x)[1]
+    numbers = Numbers(actions, FAMILIES, FED, GENERATIONS, discount)
+    worth = fitted(steps, numbers, np.random.default_rng(seed)).T
     known = np.isfinite(worth)
-    least = worth[known].min(initial=np.inf)
-    return np.where(known, worth, least)
+    return np.where(known, worth, worth[known].min(initial=np.inf))
