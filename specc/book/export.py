@@ -1,6 +1,7 @@
 """A book, from a spec to its folder."""
 
 from pathlib import Path
+from typing import Final
 
 from specc import __version__
 from specc.book import manifest
@@ -12,8 +13,11 @@ from specc.book.manifest import Book, Required
 from specc.book.naming import Names, names_of
 from specc.book.reader import READER, reader_text
 from specc.book.tables import as_csv, as_npz
+from specc.book.typesetting.pdf import require_typst, typeset
 from specc.book.words.all import chapters_of
 from specc.pages.book_page import book_pages
+
+PDF: Final = "book.pdf"
 
 
 def export_book(
@@ -22,6 +26,7 @@ def export_book(
     progress: Progress,
     *,
     allow_code: bool = False,
+    with_pdf: bool = True,
 ) -> Book:
     """Write the book of an architecture or a scenario, and return its manifest.
 
@@ -30,13 +35,15 @@ def export_book(
     """
     folder = Path(folder)
     refuse_early(folder)
+    if with_pdf:
+        require_typst(folder / PDF)
     contents = gathered(Path(spec), progress, allow_code=allow_code)
-    found = files_of(contents, progress)
+    found = files_of(contents, progress, with_pdf=with_pdf)
     write_folder(folder, found)
     return manifest.from_bytes(found[MANIFEST])
 
 
-def files_of(contents: Contents, progress: Progress) -> dict[str, bytes]:
+def files_of(contents: Contents, progress: Progress, *, with_pdf: bool = True) -> dict[str, bytes]:
     """Every file of the book, by its path in it."""
     names = names_of(contents)
     found = {name: path.read_bytes() for path, name in contents.sources.names.items()}
@@ -45,9 +52,18 @@ def files_of(contents: Contents, progress: Progress) -> dict[str, bytes]:
     found |= _data(contents, names)
     found |= figures_of(contents, names, progress)
     chapters = chapters_of(contents, names)
+    if with_pdf:
+        progress("laying out the PDF", 0, 1)
+        found[PDF] = typeset(contents.name, contents.about, chapters, _on_paper(found))
     found |= book_pages(contents.name, chapters, frozenset((*found, MANIFEST)))
     book = _book(contents, names, found)
     return {MANIFEST: manifest.to_bytes(book), **found}
+
+
+def _on_paper(found: dict[str, bytes]) -> dict[str, bytes]:
+    """The light figures by their names."""
+    light = [p for p in found if p.startswith("figures/") and not p.endswith(".dark.svg")]
+    return {path.removeprefix("figures/").removesuffix(".svg"): found[path] for path in light}
 
 
 def _data(contents: Contents, names: Names) -> dict[str, bytes]:

@@ -19,6 +19,9 @@ def export(
     output: Annotated[
         Path, typer.Option("--output", "-o", help="The folder of the book.", metavar="FOLDER")
     ] = Path("book"),
+    no_pdf: Annotated[
+        bool, typer.Option("--no-pdf", help="Without book.pdf, for which typst is needed.")
+    ] = False,
     allow_code: Annotated[
         bool,
         typer.Option("--allow-code", help="Run Python of yours that the specs name."),
@@ -36,7 +39,7 @@ def export(
     from specc.book.export import export_book
 
     with progress_bar(f"book of {spec.name}") as progress:
-        book = export_book(spec, output, progress, allow_code=allow_code)
+        book = export_book(spec, output, progress, allow_code=allow_code, with_pdf=not no_pdf)
     if form is Format.JSON:
         print_json({"name": book.name, "folder": str(output), "files": len(book.files)})
         return
