@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final, final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from specc.cli.console import print_json, print_text, say, shown_bar
+from specc.cli.console import print_json, print_text, say
 from specc.cli.options import (
     Clock,
     ClockOption,
@@ -20,18 +20,14 @@ from specc.cli.options import (
 )
 from specc.cli.status import Status
 from specc.cli.warming import warmed
+from specc.cli.watching import judged_with_bar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from specc.cli.console import Bar
     from specc.verifying.runs import Outcome, Runs
     from verifier.report.examination import Depth
 
-READING: Final = "reading"
-"""The phase in which bytes are counted."""
-PIECES: Final = 1000
-"""Of which the bar shows each recording."""
+BOOK: Final = "book.json"
+"""The file that makes a folder a book."""
 
 
 def verify(
@@ -58,6 +54,10 @@ def verify(
     every robot by its own spec, a behavior where it had its way: a row for each, and one verdict.
     `--spec` may then be a scenario, an architecture, or one behavior or arbiter.
 
+    Where a book (see `specc export`) comes first, its modules are judged, each by all recordings
+    together: which are done, which fail, and which lack data, with what is still to be recorded.
+    `--spec` then says where in the logs things stand.
+
     **Examples**
 
     `specc verify run.mcap`
@@ -67,10 +67,18 @@ def verify(
     `specc verify runs/*.mcap --quick -o report.html -o report.junit.xml -o report.sarif`
 
     `specc verify drive.mcap --format json > verdict.json`
+
+    `specc verify book/ runs/*.mcap`
     """
     from specc.verifying.runs import distinct, verify_each
 
     _refuse_early(output)
+    if (traces[0] / BOOK).is_file():
+        from specc.cli.verify_book import verify_book
+
+        return verify_book(
+            traces[0], traces[1:], spec, output, clock, form, strict=strict, allow_code=allow_code
+        )
     given, traces = traces, [Path(each) for each in distinct(traces)]
     if len(traces) < len(given):
         say("a recording that is named more than once counts once", "bold yellow")
@@ -84,7 +92,7 @@ def verify(
         strict=strict,
         depth="verdict" if quick else _depth(traces, spec, output, form),
     )
-    outcomes, is_interrupted = _judged(judge, len(traces))
+    outcomes, is_interrupted = judged_with_bar(judge, len(traces))
     return _told(outcomes, traces, output, form, is_interrupted=is_interrupted)
 
 
@@ -141,45 +149,10 @@ def _told(
     return _status(runs)
 
 
-def _judged(judge: "Callable[..., Iterator[Outcome]]", count: int) -> "tuple[list[Outcome], bool]":
-    """The outcomes, and whether Ctrl-C came before the last of them."""
-    outcomes: list[Outcome] = []
-    with shown_bar("verify") as bar:
-        watch = _Watch(bar, count)
-        try:
-            outcomes.extend(judge(progress=watch.tell, reading=watch.read))
-        except KeyboardInterrupt:
-            return outcomes, True
-    return outcomes, False
-
-
 def _recordings(outcomes: "Sequence[Outcome]") -> int:
     from specc.verifying.runs import recording_of
 
     return len({recording_of(each) for each in outcomes})
-
-
-@final
-class _Watch:
-    """Shows in a bar which recording is at work: half of it is reading, told by bytes."""
-
-    def __init__(self, bar: "Bar", count: int) -> None:
-        self._bar, self._count = bar, count
-        self._done, self._source, self._told = -1, "", ""
-
-    def tell(self, source: str, phase: str) -> None:
-        """Another phase; each recording begins with being read."""
-        self._source, self._told = source, phase
-        self._done += phase == READING
-        self._show(0.0 if phase == READING else 0.5)
-
-    def read(self, done: int, whole: int) -> None:
-        """So many bytes of how many were read."""
-        self._show(0.5 * done / max(whole, 1))
-
-    def _show(self, share: float) -> None:
-        what = f"{self._source}, {self._told}"
-        self._bar.advance(what, round((self._done + share) * PIECES), self._count * PIECES)
 
 
 def _print(runs: "Runs", form: ReportFormat) -> None:

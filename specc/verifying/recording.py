@@ -123,8 +123,39 @@ def verify_carried(
     Raises:
         SpecError: see `verify_run`.
     """
+    return verify_standard(
+        trace,
+        carried,
+        standard_of(trace, carried, spec, program_of),
+        allow_code=allow_code,
+        strict=strict,
+        depth=depth,
+        is_named=spec is not None,
+        progress=progress,
+        reading=reading,
+    )
+
+
+def verify_standard(
+    trace: Path,
+    carried: Carried,
+    standard: Standard,
+    *,
+    allow_code: bool,
+    strict: bool,
+    depth: Depth,
+    is_named: bool,
+    progress: Callable[[str], None] | None,
+    reading: Progress | None,
+) -> RunVerification:
+    """What `verify_run` does, by a standard that need not be what was carried.
+
+    is_named: whether it is another one, under which the robot need not have run.
+
+    Raises:
+        SpecError: see `verify_run`.
+    """
     tell = progress or _in_silence
-    standard = standard_of(trace, carried, spec, program_of)
     tell("reading")
     log = _opened(trace, carried, standard, reading)
     if strict:
@@ -137,7 +168,7 @@ def verify_carried(
         standard.only,
         allow_code,
         depth,
-        spec is not None,
+        is_named,
     )
     records = records_of(log, {robot.name: robot.architecture for robot in standard.robots})
     records |= {

@@ -1,6 +1,6 @@
 """A test procedure in words, for who drives it: values in the user's units, a run to a line."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from runtime.program import Unit
 from verifier.procedure.model import Drive, Excitation, Planted, Procedure, Signal, Stage
@@ -117,3 +117,10 @@ def _planted(each: Planted, unit: Unit) -> str:
         f"one whose {each.variable} is carried {quantity(each.departure, unit)} away within"
         f" {WITHIN} gets {each.verdict.upper()}"
     )
+
+
+def runs_in_words(procedure: Procedure, runs: Sequence[int]) -> tuple[str, ...]:
+    """Some of the runs, by their numbers from 0, and what to log in them."""
+    every = run_sentences(procedure)
+    told = tuple(every[run] for run in runs)
+    return (*told, log_sentence(procedure)) if told else ()

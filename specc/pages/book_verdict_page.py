@@ -1,0 +1,66 @@
+"""Where the modules of a book stand, as one page: a row for each, then what is known of each."""
+
+from typing import Final
+
+from specc.figures.quantities import seconds
+from specc.pages.page import Page, RunRow, RunsPage, RunsTable
+from specc.pages.report_page import SIGNS, gathered, rendered
+from specc.texts.book_verdict import last_line, module_names, worst_first
+from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Standing
+from verifier.report.report import Verdict
+
+VERDICTS: Final = {
+    Standing.DONE: Verdict.PASS,
+    Standing.FAILS: Verdict.FAIL,
+    Standing.LACKS: Verdict.INCONCLUSIVE,
+    Standing.FREE: Verdict.PASS,
+}
+"""In whose colours a module's standing is told."""
+HOW: Final = (
+    "Each module is judged by all recordings of it together, where it had its way; it fails where"
+    " it fails in one of them."
+)
+
+
+def book_verdict_page(verdict: BookVerdict) -> str:
+    """All modules as self-contained HTML."""
+    return rendered("runs.html.j2", gathered_book(verdict))
+
+
+def gathered_book(verdict: BookVerdict) -> RunsPage:
+    """What the page says."""
+    names, ordered = module_names(verdict), worst_first(verdict)
+    anchors = {id(each): f"module-{k + 1}" for k, each in enumerate(ordered)}
+    worst = VERDICTS[verdict.standing]
+    rows = tuple(_row(each, names[id(each)], anchors[id(each)]) for each in ordered)
+    lost = tuple(
+        RunRow("", each.source, "unusable", "!", (), each.error.diagnostics[0].message)
+        for each in verdict.unusable
+    )
+    titles = ("kind", "is", "judged")
+    return RunsPage(
+        title=f"{verdict.name}: {last_line(verdict)}",
+        verdict=str(worst),
+        sign=SIGNS[worst],
+        headline=last_line(verdict),
+        reasons=tuple(
+            f"{names[id(each)]}: {each.why[0]}"
+            for each in ordered
+            if each.standing in {Standing.FAILS, Standing.LACKS}
+        ),
+        advice=tuple(f"{names[id(each)]}: {told}" for each in ordered for told in each.to_record),
+        tables=(RunsTable("Every module", "module", titles, (*rows, *lost), HOW),),
+        pages=tuple(_page(each, anchors[id(each)]) for each in ordered if each.together),
+    )
+
+
+def _row(each: ModuleVerdict, name: str, anchor: str) -> RunRow:
+    shown = VERDICTS[each.standing]
+    judged = "–" if each.together is None else seconds(each.together.report.trace.judged)
+    cells = ((each.piece.kind, ""), (str(each.standing), ""), (judged, ""))
+    return RunRow(anchor if each.together else "", name, str(shown), SIGNS[shown], cells, "")
+
+
+def _page(each: ModuleVerdict, anchor: str) -> tuple[str, Page]:
+    assert each.together is not None, "a page is of what was judged"
+    return anchor, gathered(each.together, f"{anchor}-", is_drawn=len(each.members) == 1)

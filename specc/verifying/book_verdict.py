@@ -1,0 +1,90 @@
+"""From what recordings say to where each module of a book stands."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from runtime.arbiter import Arbiter
+from runtime.program import Program
+from specc.book.loading import LoadedBook
+from specc.verifying.architecture import NotJudged
+from specc.verifying.book import OfModules, Outcome
+from specc.verifying.book_missing import to_record
+from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Piece, Standing, pieces_of
+from specc.verifying.runs import Unusable
+from specc.verifying.trace import Verification
+from verifier.arbitration.together import pooled_decisions
+from verifier.architectures.telling import without_logs
+from verifier.fidelity.together import pooled
+from verifier.report.examination import Examination
+from verifier.report.report import Verdict
+
+NEVER = "no recording holds it"
+NOTHING = "it is code of the author's own, which promises nothing that could be judged"
+STANDINGS = {
+    Verdict.PASS: Standing.DONE,
+    Verdict.FAIL: Standing.FAILS,
+    Verdict.INCONCLUSIVE: Standing.LACKS,
+}
+
+
+def book_verdict(book: LoadedBook, outcomes: Sequence[Outcome]) -> BookVerdict:
+    """Every module of the book by all outcomes that are about it."""
+    told = [each for each in outcomes if isinstance(each, OfModules)]
+    pieces = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
+    return BookVerdict(
+        name=book.book.name,
+        modules=tuple(_module(book, piece, told) for piece in pieces),
+        unusable=tuple(each for each in outcomes if isinstance(each, Unusable)),
+        notes=(),
+    )
+
+
+def _module(book: LoadedBook, piece: Piece, told: Sequence[OfModules]) -> ModuleVerdict:
+    mine = [each.outcome for each in told if piece.place in each.places]
+    members = tuple(each for each in mine if isinstance(each, Verification))
+    lost = tuple(each for each in mine if isinstance(each, NotJudged))
+    if piece.spec is None:
+        return ModuleVerdict(piece, Standing.FREE, (), lost, None, (NOTHING,), ())
+    if not members:
+        why = tuple(dict.fromkeys(each.why for each in lost)) or (NEVER,)
+        needed = to_record(book, piece, None)
+        return ModuleVerdict(piece, Standing.LACKS, (), lost, None, why, needed)
+    together = _together(piece, members)
+    failing = [each for each in members if each.report.verdict is Verdict.FAIL]
+    standing = Standing.FAILS if failing else STANDINGS[together.report.verdict]
+    why = _why(together, failing)
+    needed = to_record(book, piece, together) if standing is Standing.LACKS else ()
+    return ModuleVerdict(piece, standing, members, lost, together, why, needed)
+
+
+def _together(piece: Piece, members: Sequence[Verification]) -> Examination:
+    """What all recordings of a module say together."""
+    if len(members) == 1:
+        return members[0].examination
+    if isinstance(piece.spec, Arbiter):
+        return pooled_decisions([each.examination for each in members])
+    report = pooled(_least(members), [each.judgement for each in members if each.judgement])
+    return without_logs(Examination(report, origins=members[0].examination.origins))
+
+
+def _least(members: Sequence[Verification]) -> Program:
+    """The program that is judged in all recordings: what one does not measure, none is judged by."""
+    programs = [each.found.program for each in members if isinstance(each.found.program, Program)]
+    kept = [set(p.fidelity.tolerance) for p in programs if p.fidelity is not None]
+    first = programs[0]
+    if first.fidelity is None or not kept:
+        return first
+    names = set.intersection(*kept)
+    tolerance = {k: v for k, v in first.fidelity.tolerance.items() if k in names}
+    return replace(first, fidelity=replace(first.fidelity, tolerance=tolerance))
+
+
+def _why(together: Examination, failing: Sequence[Verification]) -> tuple[str, ...]:
+    """What decides: of a recording that fails by itself, that; else what all say together."""
+    if not failing:
+        return together.report.reasons
+    return tuple(
+        f"{each.report.trace.source}: {each.report.reasons[0]}"
+        for each in failing
+        if each.report.reasons
+    )
