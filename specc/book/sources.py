@@ -36,6 +36,8 @@ def sources_of(path: Path, made: Architecture | Scenario, body: object = None) -
     Raises:
         SpecError: they have no folder in common, or name one another by absolute paths (V431).
     """
+    for file in dict.fromkeys(files_named((made, body))):
+        _refuse_absolute(Path(file))
     own = absolute(path)
     named = dict.fromkeys(absolute(f) for f in files_named((made, body)))
     files = dict.fromkeys((own, *named, *_beside(made)))
@@ -44,6 +46,28 @@ def sources_of(path: Path, made: Architecture | Scenario, body: object = None) -
     except ValueError as error:
         raise fault("V431", path, "its specs lie on several disks", "put them together") from error
     return Sources({f: f"{SPECS}/{f.relative_to(root).as_posix()}" for f in files})
+
+
+def _refuse_absolute(file: Path) -> None:
+    """A spec that names a file by where it lies on this machine can't be copied."""
+    loaded = examine(file).loaded if file.suffix in {".yaml", ".yml"} else None
+    texts = () if loaded is None else _texts(loaded.spec.model_dump())
+    for text in texts:
+        if Path(text).is_absolute() and Path(text).is_file():
+            message = f"it names '{text}', which is another file, or none, on other machines"
+            raise fault("V431", file, message, "name it by its path from this file: ../x.yaml")
+
+
+def _texts(value: object) -> Iterator[str]:
+    """All texts in plain data."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for each in value.values():
+            yield from _texts(each)
+    elif isinstance(value, list | tuple):
+        for each in value:
+            yield from _texts(each)
 
 
 def _beside(made: Architecture | Scenario) -> Iterator[Path]:

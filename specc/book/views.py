@@ -1,5 +1,6 @@
 """The phase portraits of a behavior that a book shows: at each setting, of each mode."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -27,20 +28,35 @@ class View:
 def views_of(program: Program, setting: Setting) -> tuple[View, ...]:
     """The portraits of a behavior at one setting of its controls, one for each mode."""
     units = {control.name: control.unit for control in program.controls}
-    given = {name: value / units[name].scale for name, value in setting.controls.items()}
+    given: dict[str, Value] = {
+        name: value / units[name].scale for name, value in setting.controls.items()
+    }
     at = ", ".join(
         f"{name} = {quantity(value, units[name], 6)}" for name, value in setting.controls.items()
     )
     mode = program.field.mode
     values = next((s.values for s in program.states if s.name == mode), ())
     if not values:
-        return (View(at or "The field", portrait(program, None, given)),)
+        return tuple(_alone(program, given, at))
     found = []
     for index, value in enumerate(values):
-        held: dict[str, Value] = {**given, mode: value}
+        held = {**given, mode: value}
         title = f"{mode} is {value}" + (f"; {at}" if at else "")
         found.append(View(title, portrait(program, _axes(program, index), held)))
     return tuple(found)
+
+
+def _alone(program: Program, given: dict[str, Value], at: str) -> Iterator[View]:
+    """The portrait of a field without modes; and of what it drives alone, if that is another."""
+    title = at or "The field"
+    whole = portrait(program, None, given)
+    driven = tuple(s.name for s in program.states if s.is_driven and s.kind is not Kind.DISCRETE)
+    yield View(title, whole)
+    if not {axis.name for axis in whole.axes} <= set(driven) and len(driven) <= WIDE:
+        alone = portrait(program, driven, given)
+        rest = [h for h in alone.held if h.name not in given]
+        held = ", ".join(f"{h.name} = {h.label or quantity(h.value, h.unit, 6)}" for h in rest)
+        yield View(f"What it drives alone, with {held} held; {at}", alone)
 
 
 def _axes(program: Program, index: int) -> tuple[str, ...] | None:

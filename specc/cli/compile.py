@@ -31,7 +31,9 @@ class Wanted:
 def compile_(
     spec: Annotated[
         Path,
-        typer.Argument(help="A behavior, architecture or scenario spec (.yaml).", metavar="SPEC"),
+        typer.Argument(
+            help="A behavior, architecture or scenario spec (.yaml), or a book.", metavar="SPEC"
+        ),
     ],
     output: Annotated[
         Path | None,
@@ -65,6 +67,8 @@ def compile_(
     `specc compile specs/van_der_pol.yaml --dump`
 
     `specc compile specs/scenarios/first_light.yaml -o first_light.specc`
+
+    `specc compile book/`
     """
     from specc.files import require_suffix
 
@@ -81,6 +85,8 @@ def _compiler_of(spec: Path) -> "Callable[[Path, Wanted], None]":
     from spec_schema.wording import with_article
     from specc import loading
 
+    if spec.is_dir():
+        return _book
     if spec.suffix == ".specc":
         raise typer.BadParameter(f"{spec} is compiled already: name a spec (.yaml)")
     kind = loading.kind_of(spec)
@@ -135,6 +141,31 @@ def _architecture(spec: Path, wanted: Wanted) -> None:
     for sentence in conclusions(compiled):
         say(sentence)
     say(f"wrote {path} ({len(data):,} bytes)", "bold")
+
+
+def _book(folder: Path, wanted: Wanted) -> None:
+    """The program of a book, made anew from the specs in it."""
+    from specc.book.folder import read_book
+    from specc.book.loading import compile_book
+    from specc.files import write_atomically
+
+    if wanted.dumps:
+        raise typer.BadParameter("--dump is for behaviors and architectures")
+    book = read_book(folder)
+    with progress_bar(f"compiling {book.name}") as progress:
+        data = compile_book(folder, progress, allow_code=wanted.allow_code)
+    own = folder / book.artifact
+    is_same = own.read_bytes() == data
+    path = wanted.output or Path(f"{book.name}.specc")
+    write_atomically(path, data)
+    if wanted.form is Format.JSON:
+        written = {"name": book.name, "artifact": str(path), "bytes": len(data)}
+        print_json({**written, "same_as_the_book": is_same})
+        return
+    told = "the same bytes as" if is_same else "another program than"
+    say(f"wrote {path} ({len(data):,} bytes): {told} {own}", "" if is_same else "bold yellow")
+    if not is_same:
+        say(f"the book was made by specc {book.specc}")
 
 
 def _scenario(spec: Path, wanted: Wanted) -> None:

@@ -1,4 +1,4 @@
-"""`book.pdf`: chapters as JSON, a layout that reads it, and Typst, which makes one document of both.
+"""`book.pdf`: chapters as JSON, a layout that reads it, and Typst, which makes one of both.
 
 Texts never become Typst's own markup: the layout gets them as data. The same chapters give the same
 bytes: the fonts are those within Typst, and the time that it writes down is fixed.

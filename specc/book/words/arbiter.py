@@ -79,12 +79,11 @@ def module_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
 
 
 def _purpose(arbiter: Arbiter, node: Node) -> Section:
-    words = author_words(arbiter.source.text)
     called = "" if arbiter.name == node.name else f" Its spec calls it `{arbiter.name}`."
     choices = listed(f"`{choice}`" for choice in arbiter.choices)
     told = f"It decides between {choices}.{called} {timing_sentences(node)}"
-    blocks = ([Paragraph(words)] if words else []) + [Paragraph(told)]
-    return Section("What it is for", tuple(blocks))
+    words = (*author_words(arbiter.source.text), told)
+    return Section("What it is for", tuple(map(Paragraph, words)))
 
 
 def _reads(arbiter: Arbiter, made: Architecture, node: Node, names: Names) -> Iterator[Block]:

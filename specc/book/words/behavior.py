@@ -62,11 +62,8 @@ def behavior_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
 
 
 def _purpose(program: Program, node: Node, called: str) -> Section:
-    blocks: list[Block] = []
-    words = author_words(program.source.text)
-    if words:
-        blocks.append(Paragraph(words))
-    moved = [state for state in program.states if state.is_driven]
+    blocks: list[Block] = [Paragraph(words) for words in author_words(program.source.text)]
+    moved = [s for s in program.states if s.is_driven and s.name != program.field.mode]
     names = ", ".join(f"`{state.name}`" for state in moved)
     blocks.append(
         Paragraph(

@@ -48,9 +48,9 @@ def _row(sheet: Sheet) -> tuple[str, ...]:
 
 
 def _example(npz: str, sheet: Sheet) -> str:
-    """A call with the middle of each axis, and what it gives."""
-    at = {n: float(own[len(own) // 2]) for n, own in zip(sheet.axes, sheet.nodes, strict=True)}
-    middle = sheet.values[tuple(len(own) // 2 for own in sheet.nodes)]
+    """A call at a node of the table, and what it gives."""
+    third = tuple(len(own) // 3 for own in sheet.nodes)
+    at = {n: own[k] for n, own, k in zip(sheet.axes, sheet.nodes, third, strict=True)}
     places = ", ".join(f'"{name}": {value:.6g}' for name, value in at.items())
     file = npz.partition("/")[2]
     setting = "" if sheet.setting == "default" else f', "{sheet.setting}"'
@@ -58,5 +58,5 @@ def _example(npz: str, sheet: Sheet) -> str:
     return (
         "from read_table import value\n\n"
         f'value("{file}", "{sheet.quantity}", {{{places}}}{setting})'
-        f"  # {float(middle):.6g}{unit}"
+        f"  # {float(sheet.values[third]):.6g}{unit}"
     )

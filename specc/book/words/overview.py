@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from runtime.architecture import Architecture, Channel, Signal, Way
 from runtime.program import Kind, Unit
-from runtime.world.model import Body, DriveKind, Sensor, SensorKind
+from runtime.world.model import Body, DriveKind, Pose, Sensor, SensorKind
 from specc.book.chapters import Block, Bullets, Chapter, Figure, Paragraph, Section, Table
 from specc.book.contents import Drawn
 from specc.book.naming import Names
@@ -39,7 +39,7 @@ def overview_chapter(of: Drawn, names: Names) -> Chapter:
     made, body = of.architecture, of.body
     words = author_words(made.source.text)
     sections = (
-        Section("What it is for", (Paragraph(words),) if words else ()),
+        Section("What it is for", tuple(map(Paragraph, words))),
         Section("How it is wired", tuple(_wiring(made, names))),
         Section("Levels and timing", tuple(_levels(made, names))),
         Section("Channels and conflicts", tuple(_channels(of, names))),
@@ -52,7 +52,7 @@ def overview_chapter(of: Drawn, names: Names) -> Chapter:
     return Chapter(
         names.overview(made),
         "architecture",
-        made.name,
+        f"Architecture {made.name}",
         made.about,
         tuple(section for section in sections if section.blocks),
     )
@@ -146,7 +146,12 @@ def _signals(made: Architecture, names: Names) -> Iterator[Block]:
         ]
         if readers:
             rows.append((f"`{signal.name}`", _range(signal), listed(readers)))
-    unread = [signal.name for k, signal in enumerate(made.board) if not _is_read(made, k)]
+    choices = {place for node in made.nodes if node.choices for place in node.outputs}
+    unread = [
+        signal.name
+        for k, signal in enumerate(made.board)
+        if k not in choices and not _is_read(made, k)
+    ]
     yield Table(("signal", "range", "read by"), tuple(rows))
     if unread:
         told = listed(f"`{name}`" for name in unread)
@@ -165,12 +170,10 @@ def _range(signal: Signal) -> str:
 
 
 def _body(body: Body) -> Iterator[Block]:
-    words = author_words(body.source.text)
     drive = body.drive
     is_holonomic = drive.kind is DriveKind.HOLONOMIC
     how = "in any direction" if is_holonomic else f"two wheels {exact(drive.track, METRE)} apart"
-    if words:
-        yield Paragraph(words)
+    yield from map(Paragraph, author_words(body.source.text))
     rows = (
         ("what it is", body.about or body.name),
         ("reaches up", span(body.low, body.high, METRE)),
@@ -226,7 +229,22 @@ def _looks(sensor: Sensor) -> str:
         told.append(f"of {listed(f'`{name}`' for name in sensor.of)}")
     if sensor.kind in {SensorKind.RANGE, SensorKind.SIGHT, SensorKind.BUMP} and sensor.width:
         told.append(f"{exact(sensor.width, DEGREE)} wide")
-        told.append(f"looking {exact(pose.heading, DEGREE)} to the left" if pose.heading else "")
-    if pose.x or pose.y:
-        told.append(f"from {exact(pose.x, METRE)} ahead, {exact(pose.y, METRE)} to the left")
+        told.append(_towards(pose.heading))
+    told.append(_from(pose))
     return ", ".join(filter(None, told))
+
+
+def _towards(heading: float) -> str:
+    """Where it looks, empty for straight ahead."""
+    if heading == 0.0:
+        return ""
+    side = "left" if heading > 0.0 else "right"
+    return f"turned {exact(abs(heading), DEGREE)} to the {side}"
+
+
+def _from(pose: Pose) -> str:
+    """Where it sits, empty for the middle of the base."""
+    ahead = f"{exact(abs(pose.x), METRE)} {'ahead of' if pose.x > 0.0 else 'behind'} the middle"
+    beside = f"{exact(abs(pose.y), METRE)} to the {'left' if pose.y > 0.0 else 'right'}"
+    told = [ahead] * (pose.x != 0.0) + [beside] * (pose.y != 0.0)
+    return f"sitting {' and '.join(told)}" if told else ""

@@ -8,6 +8,8 @@ from runtime.program import Control, Kind, State, Unit
 from specc.figures.quantities import multiple_of_pi, number, quantity
 
 DIGITS: Final = 6
+FAR: Final = 1e300
+"""What a body says of a reading that has no limits."""
 SECOND: Final = Unit("s", 1.0)
 NOTHING: Final = "–"
 KINDS: Final = {Kind.CONTINUOUS: "number", Kind.PERIODIC: "angle", Kind.DISCRETE: "one of"}
@@ -33,6 +35,8 @@ def span(low: float, high: float, unit: Unit) -> str:
     """Two ends with one unit."""
     if unit.text == "rad" and _is_pi(low) and _is_pi(high):
         return f"{multiple_of_pi(low)} … {multiple_of_pi(high)} rad"
+    if max(-low, high) > FAR:
+        return f"any, in {unit_of(unit)}"
     return f"{number(low / unit.scale, DIGITS)} … {exact(high, unit)}"
 
 

@@ -18,7 +18,7 @@ def scenario_chapter(contents: Contents, scenario: Scenario, names: Names) -> Ch
     """The scenario in which the architecture was tried."""
     words = author_words(scenario.source.text)
     sections = (
-        Section("What it is", (Paragraph(words),) if words else ()),
+        Section("What it is", tuple(map(Paragraph, words))),
         Section("What is required of a run", tuple(_required(contents, scenario))),
         Section("The world", tuple(_world(scenario, names))),
         spec_section(scenario.source, "The spec of the scenario"),
@@ -27,7 +27,7 @@ def scenario_chapter(contents: Contents, scenario: Scenario, names: Names) -> Ch
     return Chapter(
         "scenario",
         "scenario",
-        scenario.name,
+        f"Scenario {scenario.name}",
         scenario.about,
         tuple(section for section in sections if section.blocks),
     )

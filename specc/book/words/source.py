@@ -1,5 +1,7 @@
 """A spec as its author wrote it: its words, its text, and its parts."""
 
+from itertools import takewhile
+
 from runtime.program import Origin, Program
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.load import examine_source
@@ -7,14 +9,11 @@ from spec_schema.source import Source
 from specc.book.chapters import Listing, Paragraph, Section
 
 
-def author_words(text: str) -> str:
-    """The comment at the head of a spec: what its author says of it, as one paragraph."""
-    lines = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        lines.append(line.lstrip("#").strip())
-    return " ".join(filter(None, lines))
+def author_words(text: str) -> tuple[str, ...]:
+    """The comment at the head of a spec: what its author says of it, in paragraphs."""
+    lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
+    pieces = "\n".join(line.lstrip("#").strip() for line in lines).split("\n\n")
+    return tuple(" ".join(piece.split()) for piece in pieces if piece.strip())
 
 
 def behavior_spec(program: Program) -> BehaviorSpec | None:
