@@ -1,5 +1,6 @@
 """Values that a user gives on the way: `x=1`, `speed="40 cm/s"`; in SI, inside their domains."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
@@ -63,6 +64,19 @@ def seconds(value: Value, name: str = "duration") -> float:
     if not 0.0 < found < float("inf"):
         raise fault("V342", named, "it must be positive", "write 0.1 s, 20 s or 2 min")
     return found
+
+
+def instant(text: str) -> float:
+    """A time of a recording in seconds: `12.3`, `12.3s`, `2 min`; it may be 0 or below.
+
+    Raises:
+        SpecError: it is none (V342).
+    """
+    spaced = re.sub(r"(?<=[\d.])(?=[A-Za-z]+$)", " ", text.strip())
+    try:
+        return _si(spaced, parse_unit("s"))
+    except ValueError as error:
+        raise fault("V342", f"time {text}", str(error), "write 12.3, 12.3s or '2 min'") from error
 
 
 def _inside(part: Part, value: Value) -> float:

@@ -15,6 +15,7 @@ from specc.cli.check import check
 from specc.cli.compare import compare
 from specc.cli.compile import compile_
 from specc.cli.console import print_annotations, print_json, say, show_diagnostics
+from specc.cli.explain import explain
 from specc.cli.export import export
 from specc.cli.fit import fit
 from specc.cli.init import init
@@ -81,6 +82,7 @@ app.command("wiring")(wiring)
 app.command("export")(export)
 app.command("compare")(compare)
 app.command("verify")(verify)
+app.command("explain")(explain)
 app.command("fit")(fit)
 app.command("learn")(learn)
 app.command("schema")(schema)
