@@ -104,6 +104,8 @@ def plain_of(data: Any) -> Any:
         return {each.name: plain_of(getattr(data, each.name)) for each in dataclasses.fields(data)}
     if isinstance(data, Enum):
         return data.name
+    if isinstance(data, np.generic):
+        return data.item()
     if isinstance(data, tuple):
         return [plain_of(each) for each in data]
     return data

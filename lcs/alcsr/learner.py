@@ -23,9 +23,10 @@ from lcs.alcsr.kernels.tending import tend
 from lcs.alcsr.population import Population, all_arrays, empty, restored
 from lcs.alcsr.readings import RangeIs
 from lcs.arrays import Array, Integers
+from lcs.configs import config_of
 from lcs.course import Course
 from lcs.faults import LearnerError
-from lcs.given import input_of, inputs_of, range_of, reward_of, rewards_of
+from lcs.given import chance_of, count_of, input_of, inputs_of, range_of, reward_of, rewards_of
 from lcs.rules.table import RuleTable
 from lcs.state import State, array_named, chance_from, from_plain, plain_of, plain_of_chance
 
@@ -63,7 +64,7 @@ class ALCSR:
         seed: of all its chance.
 
     Raises:
-        LearnerError: that reading has no range, a range is none, or there is no action or input.
+        LearnerError: that reading has no range, or something given is not what it has to be.
     """
 
     def __init__(
@@ -77,16 +78,15 @@ class ALCSR:
         high: npt.ArrayLike | None = None,
         seed: int = 0,
     ) -> None:
-        if actions < 1 or inputs < 1:
-            raise LearnerError(f"a learner needs actions and inputs: {actions} and {inputs} given")
-        self.config = config or Config()
-        self.population: Population = empty(actions, inputs, self.config, reward_range)
+        actions, inputs = count_of(actions, "actions"), count_of(inputs, "inputs")
+        self.config = config_of(Config, config)
+        self.population: Population = empty(actions, inputs, self.config, reward_of(reward_range))
         if low is not None and high is not None:
             land = self.population.land
             land.low[:], land.high[:] = range_of(low, high, inputs)
         elif self.config.readings.range_is is RangeIs.DECLARED:
             raise LearnerError("RangeIs.DECLARED needs a range of the inputs: give low= and high=")
-        self.chance = np.random.default_rng(seed)
+        self.chance = chance_of(seed)
         self._waits_with: Array | None = None
 
     def act(self, x: npt.ArrayLike) -> int:

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Array, Booleans, Integers
+from lcs.configs import config_of
 from lcs.faults import LearnerError
-from lcs.given import input_of, inputs_of, reward_of
+from lcs.given import chance_of, count_of, input_of, inputs_of, reward_of
 from lcs.problems.steps import Plane, World
 from lcs.rules.table import RuleTable
 from lcs.state import (
@@ -70,20 +71,19 @@ class StepsLearner:
         seed: of all its chance.
 
     Raises:
-        LearnerError: a constant is out of its range, or there is no action or input.
+        LearnerError: a constant is out of its range, or something given is not what it has to be.
     """
 
     def __init__(
         self, actions: int, inputs: int, config: Config | None = None, *, seed: int = 0
     ) -> None:
-        self.config = config or Config()
+        actions, inputs = count_of(actions, "actions"), count_of(inputs, "inputs")
+        self.config = config_of(Config, config)
         refuse_unfit(self.config)
-        if actions < 1 or inputs < 1:
-            raise LearnerError(f"a learner needs actions and inputs: {actions} and {inputs} given")
         self.land = empty_land(self.config.memories, inputs)
         self.bodies = one_body(actions, inputs)
         self.due = self.config.first
-        self.chance = np.random.default_rng(seed)
+        self.chance = chance_of(seed)
         self._waits: tuple[Array, int] | None = None
 
     @property
@@ -127,24 +127,6 @@ class StepsLearner:
         self._waits = None
         if done:
             self.end_episode()
-
-    def remember(
-        self,
-        places: npt.ArrayLike,
-        actions: Integers,
-        rewards: Array,
-        after: npt.ArrayLike,
-        ends: Booleans,
-    ) -> None:
-        """Remember D steps that somebody else made: places and after (D, n), else (D,).
-
-        Raises:
-            LearnerError: not n finite numbers each.
-        """
-        x, led_to = inputs_of(places, self._n), inputs_of(after, self._n)
-        columns = actions.tolist(), rewards.tolist(), ends.tolist()
-        for k, (action, reward, end) in enumerate(zip(*columns, strict=True)):
-            voting.remember_once(self.land, x[k], action, reward, led_to[k], end, self.chance)
 
     def end_episode(self) -> None:
         """Grow if it is time to; for episodes that are given up, since `learn` calls it else."""

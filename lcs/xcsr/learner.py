@@ -7,9 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Array, Integers
+from lcs.configs import config_of
 from lcs.course import Course, Kind
 from lcs.faults import LearnerError
-from lcs.given import input_of, inputs_of, range_of, reward_of, rewards_of
+from lcs.given import chance_of, count_of, input_of, inputs_of, range_of, reward_of, rewards_of
 from lcs.rules.table import RuleTable
 from lcs.state import State, chance_from, from_plain, plain_of, plain_of_chance
 from lcs.xcsr.config import Config, Outside
@@ -43,7 +44,7 @@ class XCSR:
         seed: of all its chance.
 
     Raises:
-        LearnerError: constants that don't go together, or a range that is none.
+        LearnerError: constants that don't go together, or something given is not what it has to be.
     """
 
     def __init__(
@@ -56,11 +57,12 @@ class XCSR:
         high: npt.ArrayLike = 1.0,
         seed: int = 0,
     ) -> None:
-        self.config = config or Config()
+        actions, inputs = count_of(actions, "actions"), count_of(inputs, "inputs")
+        self.config = config_of(Config, config)
         _refuse_config(self.config, actions)
         self.actions = actions
         self.population: Population = empty(actions, self.config, *range_of(low, high, inputs))
-        self.chance = np.random.default_rng(seed)
+        self.chance = chance_of(seed)
         self._is_trying = False
 
     def act(self, x: npt.ArrayLike) -> int:

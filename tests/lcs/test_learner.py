@@ -158,5 +158,5 @@ def test_constants_that_can_be_none_are_refused() -> None:
         Config(explore=2.0)
     with pytest.raises(LearnerError, match="sprout_width is a number of 0 or more"):
         Config(sprout_width=-1.0)
-    with pytest.raises(LearnerError, match="0 and 2 given"):
+    with pytest.raises(LearnerError, match="actions is a whole number of 1 or more, and 0 is none"):
         ALCSR(0, 2)
