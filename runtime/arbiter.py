@@ -127,6 +127,14 @@ class Arbiter:
     learner: str = ""
 
     @property
+    def way(self) -> str:
+        """How it decides, in words: `rules`, or `rules learned by ALCSR`."""
+        if not self.learner:
+            return self.paradigm.value
+        learned = "learned" if len(self.rules) > 1 else "to be learned"
+        return f"rules {learned} by {self.learner.upper()}"
+
+    @property
     def register(self) -> tuple[str, ...]:
         """The names of everything that its code may read: reads, controls, constants."""
         return (

@@ -134,7 +134,7 @@ def _what(architecture: Architecture, node: Node) -> str:
         return f"behavior {architecture.programs[node.behavior].name}"
     if node.arbiter >= 0:
         arbiter = architecture.arbiters[node.arbiter]
-        return f"{arbiter.paradigm.value} {arbiter.name}"
+        return f"{arbiter.way}{':' if arbiter.learner else ''} {arbiter.name}"
     return f"module {node.module}"
 
 

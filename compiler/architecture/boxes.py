@@ -8,13 +8,14 @@ import math
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import and_
 from typing import Final, TypeAlias, final
 
 from runtime.program import Kind, State
 from spec_schema.expressions.tree import COMPARISONS
 
 Box: TypeAlias = tuple[int, ...]
-MOST_PIECES: Final = 20_000
+MOST_PIECES: Final = 5_000
 """Into so many pieces a box is cut at most, to see whether others cover it."""
 BEYOND: Final = 1
 """A cut at (value, BEYOND) leaves the value itself below it, one at (value, 0) above."""
@@ -49,20 +50,20 @@ def boxes_of(conditions: Sequence[Sequence[Limit]], reads: Sequence[State]) -> l
 
 def is_covered(box: Box, before: Sequence[Box]) -> bool:
     """Whether each point of a box lies in one of the others; False where that takes too long."""
+    others = [one for one in before if _meet(box, one)]
     waiting, pieces = [(box, 0)], 0
     while waiting:
         piece, first = waiting.pop()
-        meeting = (i for i in range(first, len(before)) if _meet(piece, before[i]))
-        other = next(meeting, None)
+        found = next((i for i in range(first, len(others)) if _meet(piece, others[i])), None)
         pieces += 1
-        if other is None or pieces > MOST_PIECES:
+        if found is None or pieces > MOST_PIECES:
             return False
-        waiting += [(part, other + 1) for part in _without(piece, before[other])]
+        waiting += [(part, found + 1) for part in _without(piece, others[found])]
     return True
 
 
 def _meet(one: Box, other: Box) -> bool:
-    return all(a & b for a, b in zip(one, other, strict=True))
+    return all(map(and_, one, other))
 
 
 def _without(box: Box, other: Box) -> list[Box]:

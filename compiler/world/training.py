@@ -109,8 +109,7 @@ def _trained(text: str, robots: Sequence[Robot], findings: Findings) -> tuple[st
         return text, ""
     arbiter = arbiters[text]
     if not arbiter.learner:
-        way = arbiter.paradigm.value
-        message = f"'{text}' decides by {way}, and what is trained decides by alcsr or xcsr"
+        message = f"'{text}' decides by {arbiter.way}, and what is trained decides by alcsr or xcsr"
         remedy = f"write `by: {{alcsr: {{}}}}` in {arbiter.source.file}"
         findings.error("S392", path, message, remedy)
     elif not arbiter.reads:

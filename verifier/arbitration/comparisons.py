@@ -40,7 +40,10 @@ class Comparison:
 @final
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """Rules whose thresholds are entries, which `comparisons` name; equal sides share one."""
+    """Rules whose thresholds are entries, which `comparisons` name.
+
+    Equal sides share one; those that are bare numbers do where they meet the same reading.
+    """
 
     rules: tuple[Rule, ...]
     comparisons: tuple[Comparison, ...]
@@ -98,15 +101,30 @@ def _compared(
     does_read = [bool(reads & set(side.split(" "))) for side in operands]
     if does_read == [True, False]:
         reading, side = operands
-        entry = entries.setdefault(side, f"threshold.{len(entries)}")
+        entry = _entry(reading, side, entries)
         found.append(Comparison(Code(reading), word, Code(side), entry, origin))
         return reading, entry
     if does_read == [False, True]:
         side, reading = operands
-        entry = entries.setdefault(side, f"threshold.{len(entries)}")
+        entry = _entry(reading, side, entries)
         found.append(Comparison(Code(reading), TURNED[word], Code(side), entry, origin))
         return entry, reading
     return operands
+
+
+def _entry(reading: str, side: str, entries: dict[str, str]) -> str:
+    """The entry of a threshold: that 0.5 stands in two rules does not make it one number."""
+    key = f"{reading} {side}" if is_number(side) else side
+    return entries.setdefault(key, f"threshold.{len(entries)}")
+
+
+def is_number(text: str) -> bool:
+    """Whether a side of a comparison is a bare number, without a name."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _steps(code: Code, stack: list[str]) -> Iterator[tuple[str, Sequence[str]]]:

@@ -9,7 +9,7 @@ from runtime.arbiter import Arbiter
 from runtime.arrays import Booleans, Integers
 from runtime.program import Unit
 from verifier.arbitration.choosing import RuleChooser
-from verifier.arbitration.comparisons import Comparison, infix
+from verifier.arbitration.comparisons import Comparison, infix, is_number
 from verifier.arbitration.decisions import Decisions
 from verifier.arbitration.refitting import (
     Scales,
@@ -110,15 +110,7 @@ def unit_of(arbiter: Arbiter, comparison: Comparison) -> Unit:
 def _name_of(comparison: Comparison) -> str:
     """The constant or control, or the whole comparison where it is a number."""
     side = comparison.side.text
-    return infix(comparison.side) if not _is_number(side) else comparison.text
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+    return infix(comparison.side) if not is_number(side) else comparison.text
 
 
 def _one_each(rules: RuleChooser) -> tuple[Comparison, ...]:

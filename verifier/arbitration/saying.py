@@ -61,14 +61,28 @@ def sentences_of(section: Arbitration) -> tuple[str, ...]:
 def threshold_sentence(each: Threshold) -> str:
     """`near is 0.494 to 0.495 m (spec 0.55 m)`."""
     own = exact(each.value, each.unit)
+    name = f"the number in `{each.comparison}`" if _is_bare(each) else each.name
     low, high = each.interval.low, each.interval.high
     if math.isinf(low) and math.isinf(high):
-        return f"{each.name} may be anything (spec {own}): no reading is decided by it"
+        return f"{name} may be anything (spec {own}): no reading is decided by it"
     if math.isinf(low):
-        return f"{each.name} is at most {quantity(high, each.unit)} (spec {own})"
+        return f"{name} is at most {quantity(high, each.unit)} (spec {own})"
     if math.isinf(high):
-        return f"{each.name} is at least {quantity(low, each.unit)} (spec {own})"
-    return f"{each.name} is {span(low, high, each.unit)} (spec {own})"
+        return f"{name} is at least {quantity(low, each.unit)} (spec {own})"
+    return f"{name} is {span(low, high, each.unit)} (spec {own})"
+
+
+def _is_bare(threshold: Threshold) -> bool:
+    """Whether it is a number that stands in a condition itself, as in learned rules."""
+    return threshold.name == threshold.comparison
+
+
+def _to_write(threshold: Threshold) -> str:
+    """What the spec has to say so that the threshold is where the robot's is."""
+    if not _is_bare(threshold):
+        return f"{threshold.name}: {exact(threshold.fitted, threshold.unit)}"
+    compared = threshold.comparison.rpartition(" ")[0]
+    return f"`{compared} {threshold.fitted:.6g}` for `{threshold.comparison}`"
 
 
 def region_phrase(region: Region) -> str:
@@ -175,7 +189,7 @@ def _open(section: Arbitration) -> tuple[str, ...]:
 
 def _advice(section: Arbitration) -> tuple[str, ...]:
     found = [
-        f"if the robot is right, write {each.name}: {exact(each.fitted, each.unit)} ({each.origin})"
+        f"if the robot is right, write {_to_write(each)} ({each.origin})"
         for each in section.thresholds
         if each.standing is ThresholdStanding.MOVED
     ]
