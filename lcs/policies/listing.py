@@ -2,7 +2,7 @@
 
 The next rule is always the one after which, were the list to end there, least would be lost:
 separate and conquer (Fuernkranz 1999), by cost and not by count, so that a place where all actions
-are nearly equal asks for no rule.
+are nearly equal asks for no rule. Then rules and conditions go that save next to nothing.
 """
 
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ import numpy as np
 
 from lcs.arrays import Array, Booleans, Integers
 from lcs.policies.decision_list import DecisionList, holds
+from lcs.policies.simplifying import Draft, simplified
 
 WORTH_A_RULE: Final = 0.01
 """A rule saves at least so much of what the best single action loses."""
@@ -38,7 +39,7 @@ def listed(offer: Offer, x: Array, cost: Array, *, tolerance: float, most: int) 
         most: rules.
     """
     held = holds(offer.lower, offer.upper, x)
-    least = WORTH_A_RULE * cost.sum(axis=0).min()
+    least = WORTH_A_RULE * float(cost.sum(axis=0).min())
     chosen: list[int] = []
     left = np.ones(len(x), np.bool_)
     while len(chosen) < most:
@@ -48,8 +49,8 @@ def listed(offer: Offer, x: Array, cost: Array, *, tolerance: float, most: int) 
             break
         chosen.append(best)
         left &= ~held[best]
-    kept = _needed(offer, chosen, held, cost, least)
-    return _told(offer, kept, x, cost, tolerance)
+    draft = Draft(offer.action[chosen], offer.lower[chosen], offer.upper[chosen])
+    return _told(simplified(draft, x, cost, least), x, cost, tolerance)
 
 
 def _best(action: Integers, held: Booleans, cost: Array) -> tuple[int, float]:
@@ -63,43 +64,14 @@ def _best(action: Integers, held: Booleans, cost: Array) -> tuple[int, float]:
     return best, float(loses[best])
 
 
-def _needed(
-    offer: Offer, chosen: list[int], held: Booleans, cost: Array, least: float
-) -> list[int]:
-    """Those of the chosen without which the list would lose more; the last first."""
-    kept = list(chosen)
-    for box in reversed(chosen):
-        without = [other for other in kept if other != box]
-        if _loses(offer, without, held, cost) - _loses(offer, kept, held, cost) <= least:
-            kept = without
-    return kept
-
-
-def _loses(offer: Offer, rules: list[int], held: Booleans, cost: Array) -> float:
-    taken, otherwise = _taken(offer, rules, held, cost)
-    taken = np.where(taken < 0, otherwise, taken)
-    return float(cost[np.arange(len(cost)), taken].sum())
-
-
-def _taken(offer: Offer, rules: list[int], held: Booleans, cost: Array) -> tuple[Integers, int]:
-    """The action at each example by the first rule, -1 by none; and the best one for those."""
-    taken = np.full(len(cost), -1)
-    for box in reversed(rules):
-        taken[held[box]] = offer.action[box]
-    rest = cost[taken < 0].sum(axis=0)
-    return taken, int(rest.argmin())
-
-
-def _told(offer: Offer, rules: list[int], x: Array, cost: Array, tolerance: float) -> DecisionList:
+def _told(draft: Draft, x: Array, cost: Array, tolerance: float) -> DecisionList:
     """The list, with how often each rule was right where it was the first."""
-    held = holds(offer.lower, offer.upper, x)
-    _, otherwise = _taken(offer, rules, held, cost)
-    lower, upper = offer.lower[rules], offer.upper[rules]
-    first = np.append(held[rules], np.ones((1, len(x)), np.bool_), axis=0).argmax(axis=0)
+    first = draft.first(x)
+    otherwise = draft.otherwise(first, cost)
     good = cost <= tolerance
-    right = np.zeros(len(rules), np.int64)
-    wrong = np.zeros(len(rules), np.int64)
-    for r, box in enumerate(rules):
-        those = good[first == r, offer.action[box]]
+    right = np.zeros(len(draft.action), np.int64)
+    wrong = np.zeros(len(draft.action), np.int64)
+    for r, action in enumerate(draft.action):
+        those = good[first == r, action]
         right[r], wrong[r] = those.sum(), (~those).sum()
-    return DecisionList(offer.action[rules], lower, upper, right, wrong, otherwise)
+    return DecisionList(draft.action, draft.lower, draft.upper, right, wrong, otherwise)

@@ -76,44 +76,70 @@ def means(leaves: Integers, expected: Array, worth: Array) -> None:
         worth[k] = total / leaves.shape[1]
 
 
+@part
+def grow_all(
+    lived: Lived,
+    numbers: Numbers,
+    target: Array,
+    leaves: tuple[Integers, Integers],
+    chance: np.random.Generator,
+) -> None:
+    """New trees for what each step led to; which leaves hold x and after, (A, N, F) each."""
+    here, there = leaves
+    for a in range(numbers.actions):
+        own = np.flatnonzero(lived.action == a)
+        trees = seedlings(numbers.families, own.size, numbers.fed)
+        x, led_to = lived.x[own], target[own]
+        for f in range(numbers.families):
+            if own.size:
+                grow_tree(trees, f, x, led_to, numbers.fed, chance)
+            for k in range(target.size):
+                here[a, k, f] = leaf_at(trees, f, lived.x[k])
+                there[a, k, f] = leaf_at(trees, f, lived.after[k])
+
+
+@part
+def settle(
+    lived: Lived,
+    discount: float,
+    target: Array,
+    leaves: tuple[Integers, Integers],
+    expected: Array,
+) -> None:
+    """Let what leaves expect (A, F, M), and what steps led to, agree.
+
+    Means of means weigh all with shares that sum to one, so a round brings any two sets of
+    expectations nearer to each other by the discount (Gordon 1995).
+    """
+    here, there = leaves
+    then = np.full((len(expected), target.size), -np.inf)
+    for _ in range(ROUNDS):
+        change = 0.0
+        for a in range(len(expected)):
+            own = np.flatnonzero(lived.action == a)
+            if own.size:
+                change = max(change, digest(own, here[a], target, expected[a]))
+                means(there[a], expected[a], then[a])
+        value(lived, discount, then, target)
+        if change <= NEAR * (target.max() - target.min()):
+            return
+
+
 @kernel
 def fitted(lived: Lived, numbers: Numbers, chance: np.random.Generator) -> Array:
     """What each action is worth at each of the steps' places, (A, N); -inf if it was never taken.
 
-    Trees grow for what was expected last; then what they expect settles: means of means weigh all
-    with shares that sum to one, so a round brings any two sets of expectations nearer to each
-    other by the discount (Gordon 1995).
+    Trees grow for what was expected last; then what they expect settles.
     """
-    count, n = lived.x.shape
     target = lived.reward.copy()
-    worth, then = np.empty((numbers.actions, count)), np.empty((numbers.actions, count))
-    here = np.zeros((numbers.actions, count, numbers.families), np.int64)
-    there = np.zeros((numbers.actions, count, numbers.families), np.int64)
-    expected = np.zeros((numbers.actions, numbers.families, 2 * (count // numbers.fed) + 3))
+    worth = np.full((numbers.actions, target.size), -np.inf)
+    expected = np.zeros((numbers.actions, numbers.families, 2 * (target.size // numbers.fed) + 3))
+    here = np.zeros((numbers.actions, target.size, numbers.families), np.int64)
+    leaves = here, np.zeros_like(here)
     for _ in range(numbers.generations):
-        for a in range(numbers.actions):
-            own = np.flatnonzero(lived.action == a)
-            trees = seedlings(numbers.families, own.size, numbers.fed)
-            x, led_to = lived.x[own], target[own]
-            for f in range(numbers.families):
-                if own.size:
-                    grow_tree(trees, f, x, led_to, numbers.fed, chance)
-                for k in range(count):
-                    here[a, k, f] = leaf_at(trees, f, lived.x[k])
-                    there[a, k, f] = leaf_at(trees, f, lived.after[k])
-        for _ in range(ROUNDS):
-            change = 0.0
-            for a in range(numbers.actions):
-                own = np.flatnonzero(lived.action == a)
-                change = max(change, digest(own, here[a], target, expected[a]))
-                means(there[a], expected[a], then[a])
-                if own.size == 0:
-                    then[a] = -np.inf
-            value(lived, numbers.discount, then, target)
-            if change <= NEAR * (target.max() - target.min()):
-                break
+        grow_all(lived, numbers, target, leaves, chance)
+        settle(lived, numbers.discount, target, leaves, expected)
     for a in range(numbers.actions):
-        means(here[a], expected[a], worth[a])
-        if not (lived.action == a).any():
-            worth[a] = -np.inf
+        if (lived.action == a).any():
+            means(here[a], expected[a], worth[a])
     return worth
