@@ -2,13 +2,15 @@
 
 import reprlib
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Array
 from lcs.faults import LearnerError
+
+NO_ACTION: Final = "no action waits for its reward: call act(x) first, and learn once for each"
 
 
 def numbers_of(given: npt.ArrayLike, what: str) -> Array:

@@ -26,7 +26,16 @@ from lcs.arrays import Array, Integers
 from lcs.configs import config_of
 from lcs.course import Course
 from lcs.faults import LearnerError
-from lcs.given import chance_of, count_of, input_of, inputs_of, range_of, reward_of, rewards_of
+from lcs.given import (
+    NO_ACTION,
+    chance_of,
+    count_of,
+    input_of,
+    inputs_of,
+    range_of,
+    reward_of,
+    rewards_of,
+)
 from lcs.rules.table import RuleTable
 from lcs.state import State, array_named, chance_from, from_plain, plain_of, plain_of_chance
 
@@ -47,6 +56,7 @@ class Kept:
     reward_range: float
     config: Config
     chance: dict[str, Any]
+    has_acted: bool
     is_trying: bool
 
 
@@ -87,6 +97,7 @@ class ALCSR:
         elif self.config.readings.range_is is RangeIs.DECLARED:
             raise LearnerError("RangeIs.DECLARED needs a range of the inputs: give low= and high=")
         self.chance = chance_of(seed)
+        self._has_acted = False
         self._waits_with: Array | None = None
 
     def act(self, x: npt.ArrayLike) -> int:
@@ -103,6 +114,7 @@ class ALCSR:
             if said < actions:
                 break
             self.population.make_room()
+        self._has_acted = True
         if said < 0:
             return -1 - said
         self._waits_with = given
@@ -117,9 +129,12 @@ class ALCSR:
         """The reward of the action that was tried; of one that was a test nothing is learnt.
 
         Raises:
-            LearnerError: the reward is not finite.
+            LearnerError: the reward is not finite, or there is no action that it is for.
         """
         given = reward_of(reward)
+        if not self._has_acted:
+            raise LearnerError(NO_ACTION)
+        self._has_acted = False
         if self._waits_with is None:
             return
         owed = np.full((1, self.population.rules.living.size), given)
@@ -205,6 +220,7 @@ class ALCSR:
             reward_range=self.population.numbers.reward_range,
             config=self.config,
             chance=plain_of_chance(self.chance),
+            has_acted=self._has_acted,
             is_trying=self.is_trying,
         )
         arrays = dict(all_arrays(self.population))
@@ -230,6 +246,7 @@ class ALCSR:
         )
         learner.population = restored(learner.population, state.arrays)
         learner.chance = chance_from(kept.chance)
+        learner._has_acted = kept.has_acted
         if kept.is_trying:
             learner._waits_with = learner._checked(array_named("waits_with", state.arrays))
         return learner

@@ -10,7 +10,16 @@ from lcs.arrays import Array, Integers
 from lcs.configs import config_of
 from lcs.course import Course, Kind
 from lcs.faults import LearnerError
-from lcs.given import chance_of, count_of, input_of, inputs_of, range_of, reward_of, rewards_of
+from lcs.given import (
+    NO_ACTION,
+    chance_of,
+    count_of,
+    input_of,
+    inputs_of,
+    range_of,
+    reward_of,
+    rewards_of,
+)
 from lcs.rules.table import RuleTable
 from lcs.state import State, chance_from, from_plain, plain_of, plain_of_chance
 from lcs.xcsr.config import Config, Outside
@@ -29,6 +38,7 @@ class Plain:
     high: tuple[float, ...]
     config: Config
     chance: dict[str, Any]
+    has_acted: bool
     is_trying: bool
 
 
@@ -63,6 +73,7 @@ class XCSR:
         self.actions = actions
         self.population: Population = empty(actions, self.config, *range_of(low, high, inputs))
         self.chance = chance_of(seed)
+        self._has_acted = False
         self._is_trying = False
 
     def act(self, x: npt.ArrayLike) -> int:
@@ -74,6 +85,7 @@ class XCSR:
         self._refuse_while_waiting()
         action, kind = cycle.act(*self._parts(), self._inside(input_of(x, self._n)), self.chance)
         self._is_trying = kind != Kind.TEST
+        self._has_acted = True
         return int(action)
 
     @property
@@ -88,16 +100,19 @@ class XCSR:
         ended; gamma times what is expected there counts as reward.
 
         Raises:
-            LearnerError: the reward or the input is not finite, or the input out of range.
+            LearnerError: the reward or the input is not finite, the input out of range, or there
+                is no action that the reward is for.
         """
         given = reward_of(reward)
+        if not self._has_acted:
+            raise LearnerError(NO_ACTION)
         n = self._n
         after = np.zeros((0, n))
         if following is not None:
             after = self._inside(input_of(following, n))[None]
         if self._is_trying:
             cycle.learn(*self._parts(), given, after, self.chance)
-        self._is_trying = False
+        self._has_acted = self._is_trying = False
 
     def run(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> Course:
         """A cycle for each input (T, n), where action a would be given rewards (T, A).
@@ -163,6 +178,7 @@ class XCSR:
             high=tuple(space.high.tolist()),
             config=self.config,
             chance=plain_of_chance(self.chance),
+            has_acted=self._has_acted,
             is_trying=self.is_trying,
         )
         return State("XCSR", plain_of(plain), all_arrays(self.population))
@@ -179,6 +195,7 @@ class XCSR:
         learner = cls(plain.actions, inputs, plain.config, low=plain.low, high=plain.high)
         learner.population = restored(learner.population, state.arrays)
         learner.chance = chance_from(plain.chance)
+        learner._has_acted = plain.has_acted
         learner._is_trying = plain.is_trying
         return learner
 

@@ -97,6 +97,23 @@ def test_what_are_no_rewards_is_refused(name: str, given: Any) -> None:
         learner.run([[0.1, 0.2]], given)
 
 
+@pytest.mark.parametrize("explore", [0.0, 1.0])
+@pytest.mark.parametrize("name", BOTH)
+def test_a_reward_is_for_an_action_and_for_one_alone(name: str, explore: float) -> None:
+    kind, config = LEARNERS[name]
+    learner = kind(2, 2, config(explore=explore))
+    with pytest.raises(LearnerError, match=r"no action waits for its reward: call act\(x\) first"):
+        learner.learn(1.0)
+    for _ in range(4):  # where nothing is known, it tries
+        learner.act([0.1, 0.2])
+        again = kind.from_state(learner.state())
+        learner.learn(1.0)
+        again.learn(1.0)
+        for each in (learner, again, kind.from_state(learner.state())):
+            with pytest.raises(LearnerError, match="no action waits"):
+                each.learn(1.0)
+
+
 @pytest.mark.parametrize("name", BOTH)
 @pytest.mark.parametrize("given", ["1", None, [1.0], 1j, float("nan")])
 def test_what_is_no_reward_is_refused(name: str, given: Any) -> None:
