@@ -23,7 +23,7 @@ BY_DOMAINS: Final = ("S25", "S26")
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class CheckedFile:
-    """What is told of a file; made: what an architecture or scenario is, where it is sound."""
+    """What is told of a file; made: what it is, of a sound architecture, scenario or arbiter."""
 
     diagnostics: tuple[Diagnostic, ...]
     made: "Wired | None" = None
@@ -35,7 +35,7 @@ def check(path: Path | str) -> tuple[Diagnostic, ...]:
 
 
 def check_file(path: Path | str) -> CheckedFile:
-    """The same, and what an architecture or a scenario is."""
+    """The same, and what an architecture, a scenario or an arbiter is."""
     try:
         return _checked(examine(Path(path)))
     except SpecError as error:

@@ -2,7 +2,7 @@
 
 from typing import TypeAlias
 
-from compiler.architecture.arbiters import lower_arbiter
+from compiler.architecture.arbiters import CompiledArbiter, lower_arbiter
 from compiler.architecture.bodies import lower_body
 from compiler.architecture.library import Library
 from compiler.architecture.passes import CompiledArchitecture, compile_parts
@@ -17,14 +17,14 @@ from spec_schema.load import Loaded
 from spec_schema.scenario import ScenarioSpec
 from spec_schema.world import WorldSpec
 
-Wired: TypeAlias = CompiledArchitecture | CompiledScenario
-"""What is known of an architecture or a scenario without tables; it can't be run."""
+Wired: TypeAlias = CompiledArchitecture | CompiledScenario | CompiledArbiter
+"""What is known of an architecture, scenario or arbiter without tables; it can't be run."""
 
 
 def check_kind(loaded: Loaded) -> tuple[tuple[Diagnostic, ...], Wired | None]:
     """Every mistake in a spec that is no behavior, and in the files that it names.
 
-    And of an architecture or scenario what it is, where all of it is sound.
+    And of an architecture, scenario or arbiter what it is, where all of it is sound.
     """
     findings, library = Findings(loaded), Library()
     made: Wired | None = None
@@ -32,7 +32,7 @@ def check_kind(loaded: Loaded) -> tuple[tuple[Diagnostic, ...], Wired | None]:
         case BodySpec() as spec:
             lower_body(spec, loaded, findings)
         case ArbiterSpec() as spec:
-            lower_arbiter(spec, loaded, library, findings)
+            made = CompiledArbiter(lower_arbiter(spec, loaded, library, findings), ())
         case ArchitectureSpec() as spec:
             made = compile_parts(spec, loaded, library, findings)
         case WorldSpec() as spec:

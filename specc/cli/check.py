@@ -38,7 +38,8 @@ def check(
         bool | None,
         typer.Option(
             "--notes/--no-notes",
-            help="Tell what was proved of architectures, and what they leave open; default: "
+            help="Tell what was proved of architectures, what they leave open, and the rules of "
+            "arbiters; default: "
             f"where at most {TOLD} files are checked, and in JSON not.",
         ),
     ] = None,
@@ -53,7 +54,8 @@ def check(
     and each claim under `expect:` is proved, sampled, or refuted with a witness.
 
     Of an architecture it tells how each channel is resolved and, where `exclusive` is claimed, the
-    proof; then what is left open: controls at their defaults, outputs that no node reads.
+    proof; then what is left open: controls at their defaults, outputs that no node reads. Of an
+    arbiter it tells its rules as sentences, sorted by what they decide.
 
     **Examples**
 
@@ -64,6 +66,8 @@ def check(
     `specc check patrol.yaml --claims`
 
     `specc check specs/architectures/ --notes`
+
+    `specc check specs/arbiters/who_goes.yaml`
     """
     files = _files(paths)
     is_bare = notes is False
@@ -81,9 +85,18 @@ def check(
     if form is ReportFormat.TEXT:
         further = "; `specc compile` makes the tables of fields, and looks at their values"
         done = f"{_specs(len(files))} without mistakes"
-        is_open = not is_bare and (made or len(files) > 1)
+        is_open = not is_bare and (_has_fields(made) or len(files) > 1)
         say(done + further * bool(is_open), "bold green")
     return Status.YES
+
+
+def _has_fields(made: "Sequence[Wired]") -> bool:
+    """Whether there is more than arbiters, which have no tables."""
+    if not made:
+        return False
+    from compiler.architecture.arbiters import CompiledArbiter
+
+    return any(not isinstance(each, CompiledArbiter) for each in made)
 
 
 def _files(paths: Sequence[Path]) -> Sequence[Path]:
@@ -139,9 +152,14 @@ def _record(
     """Mistakes, and what was proved and left open where it is wanted."""
     record = {"mistakes": [each.as_json() for each in found]}
     if wired is not None:
+        from compiler.architecture.arbiters import CompiledArbiter
         from specc.texts.architecture import conclusions_records
 
-        record["architectures"] = [one for each in wired for one in conclusions_records(each)]
+        arbiters = [each for each in wired if isinstance(each, CompiledArbiter)]
+        others = [each for each in wired if not isinstance(each, CompiledArbiter)]
+        record["architectures"] = [one for each in others for one in conclusions_records(each)]
+        if arbiters:
+            record["arbiters"] = [one for each in arbiters for one in conclusions_records(each)]
     return record
 
 

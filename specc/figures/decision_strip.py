@@ -91,7 +91,9 @@ def draw_strip(found: Explained, style: Style = Style.SCREEN) -> Figure:
         figure.axes[-1].tick_params(labelbottom=True)
         corner = np.array([LEFT + WIDTH + 0.18, below + height]) / figure.get_size_inches()
         draw_legend(figure, entries, (float(corner[0]), float(corner[1])))
-        write_heading(figure, text, palette, LEFT, below + height + text.height, below - BELOW)
+        write_heading(
+            figure, text, palette, LEFT, below + height + text.height, below - BELOW + 0.18
+        )
     return figure
 
 

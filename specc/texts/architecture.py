@@ -1,18 +1,27 @@
-"""What was proved and chosen of an architecture, for people and for programs."""
+"""What was proved and chosen of an architecture, or how an arbiter decides, in sentences."""
 
 from collections.abc import Sequence
 from typing import Any
 
+from compiler.architecture.arbiters import CompiledArbiter
 from compiler.architecture.passes import CompiledArchitecture
 from compiler.world.scenario_passes import CompiledScenario
 from runtime.architecture import Architecture, Channel
+from specc.texts.arbiters import arbiter_record, arbiter_sentences, way_of
 
 
-def conclusions(made: CompiledArchitecture | CompiledScenario, *, named: bool = False) -> list[str]:
+def conclusions(
+    made: CompiledArchitecture | CompiledScenario | CompiledArbiter, *, named: bool = False
+) -> list[str]:
     """A sentence for each channel and note; of a scenario the proofs of its architectures.
 
-    named: whether the name of the architecture stands before each, as it does in a scenario.
+    Of an arbiter how it decides, rule by rule. named: whether the name of the architecture or the
+    arbiter stands before each, as it does in a scenario.
     """
+    if isinstance(made, CompiledArbiter):
+        before = f"{made.arbiter.name}: " if named else ""
+        told = (f"decides {way_of(made.arbiter)}", *arbiter_sentences(made.arbiter))
+        return [before + sentence for sentence in told]
     if isinstance(made, CompiledArchitecture):
         before = f"{made.architecture.name}: " if named else ""
         sentences = (*map(_channel, made.architecture.channels), *made.notes)
@@ -25,8 +34,12 @@ def conclusions(made: CompiledArchitecture | CompiledScenario, *, named: bool = 
     ]
 
 
-def conclusions_records(made: CompiledArchitecture | CompiledScenario) -> list[dict[str, Any]]:
-    """The same of each architecture, for JSON."""
+def conclusions_records(
+    made: CompiledArchitecture | CompiledScenario | CompiledArbiter,
+) -> list[dict[str, Any]]:
+    """The same of each architecture, or of the arbiter, for JSON."""
+    if isinstance(made, CompiledArbiter):
+        return [arbiter_record(made.arbiter)]
     if isinstance(made, CompiledArchitecture):
         return [_record(made.architecture, made.notes)]
     return [_record(each, ()) for each in architectures_of(made)]
