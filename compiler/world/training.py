@@ -36,8 +36,8 @@ def lower_training(
 
     known: the quantities of the run. duration: seconds.
     """
-    reward = read_reward(spec, findings)
     robot, node = _trained(spec.arbiter, robots, findings)
+    reward = read_reward(spec, findings)
     quantities: dict[str, None] = {}
     measures = []
     for name, one in spec.measures.items():
