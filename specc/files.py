@@ -5,9 +5,13 @@ import secrets
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
+
+BOM: Final = b"\xef\xbb\xbf"
+"""A mark of byte order, which some editors write."""
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -33,6 +37,25 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise fault("V347", path, f"the file can't be written: {why}") from error
     finally:
         _remove(beside)
+
+
+def write_over(path: Path, text: str, new: str, meanwhile: str) -> None:
+    """Replace a text by another, whole or not at all; a mark of byte order stays.
+
+    meanwhile: what happened since it was read, as `the spec was changed while ...`.
+
+    Raises:
+        SpecError: it is not that text any more (V374), or can't be written (V347).
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        why = str(error.strerror).lower()
+        raise fault("V374", path, f"the spec can't be read any more: {why}") from error
+    if data.removeprefix(BOM) != text.encode():
+        message = f"the spec was changed while {meanwhile}, so nothing is written"
+        raise fault("V374", path, message, "run the command again")
+    write_atomically(path, BOM * data.startswith(BOM) + new.encode())
 
 
 def _remove(path: Path) -> None:

@@ -7,13 +7,10 @@ from pathlib import Path
 from typing import final
 
 from spec_schema.source import Source
-from specc.faults import fault
-from specc.files import write_atomically
+from specc.files import write_over
 from specc.fitting.moves import Move
 from specc.fitting.weighing import Weighed
 from verifier.report.report import Report
-
-BOM = b"\xef\xbb\xbf"
 
 
 @final
@@ -81,9 +78,7 @@ class Fitted:
         Raises:
             SpecError: it was changed in the meantime (V374), or can't be written (V347).
         """
-        data = _unchanged(self.path, self.source.text)
-        mark = BOM if data.startswith(BOM) else b""
-        write_atomically(self.path, mark + self.edited.text.encode())
+        write_over(self.path, self.source.text, self.edited.text, "it was fitted")
 
 
 def joined(first: Fitted, last: Fitted) -> Fitted:
@@ -104,16 +99,3 @@ def joined(first: Fitted, last: Fitted) -> Fitted:
         after=last.after,
         instead=(*first.instead, *last.instead),
     )
-
-
-def _unchanged(path: Path, text: str) -> bytes:
-    """What the file holds, which must still be the text that was fitted."""
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        why = str(error.strerror).lower()
-        raise fault("V374", path, f"the spec can't be read any more: {why}") from error
-    if data.removeprefix(BOM) != text.encode():
-        message = "the spec was changed while it was fitted, so nothing is written"
-        raise fault("V374", path, message, "run the command again")
-    return data

@@ -6,12 +6,12 @@ seed_0/checkpoint.npz       a run, to go on from
 """
 
 import dataclasses
-import json
 from pathlib import Path
 from typing import Final
 
 from specc.faults import fault
 from specc.files import json_bytes, write_atomically
+from specc.kept import record_in, refuse_file, refuse_taken
 from specc.learning.experiment import Experiment, experiment_of, record_of, usual
 
 EXPERIMENT: Final = "experiment.json"
@@ -32,16 +32,13 @@ def begin_in(folder: Path, experiment: Experiment) -> None:
         SpecError: the folder holds an experiment (V403), is none or holds something that an
             experiment would write over (V405), or can't be written (V347).
     """
-    _refuse_file(folder)
+    refuse_file(folder, "V405")
     if (folder / EXPERIMENT).exists():
         remedy = f"`specc learn --resume -o {folder}` goes on with it; or name another folder"
         raise fault("V403", folder, "this folder holds an experiment already", remedy)
     taken = [folder / name for name in NAMES]
     taken += [run_folder(folder, seed) for seed in experiment.seeds]
-    for path in taken:
-        if path.exists() or path.is_symlink():
-            message = "this is of no experiment that is kept here, and would be written over"
-            raise fault("V405", path, message, "name another folder; or move this away")
+    refuse_taken(taken, "V405", "experiment")
     write_experiment(folder, experiment)
 
 
@@ -62,23 +59,12 @@ def experiment_in(folder: Path) -> Experiment:
             no folder (V405).
         OSError: it can't be read.
     """
-    _refuse_file(folder)
+    refuse_file(folder, "V405")
     path = folder / EXPERIMENT
     if not path.exists():
         remedy = "name the folder that -o named; or leave --resume out"
         raise fault("V403", folder, f"there is nothing to resume: no {EXPERIMENT}", remedy)
-    try:
-        return experiment_of(json.loads(path.read_text(encoding="utf-8")))
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        remedy = "begin again in another folder"
-        raise fault(
-            "V404", path, f"this is no experiment of this specc: {error}", remedy
-        ) from error
-
-
-def _refuse_file(folder: Path) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise fault("V405", folder, "this is a file, no folder", "name a folder, or a new one")
+    return record_in(path, "V404", "experiment", experiment_of)
 
 
 def continued(folder: Path, kept: Experiment, cycles: int | None) -> Experiment:

@@ -5,20 +5,17 @@ and how long it took. A run that goes on from it gives the same bits as one that
 """
 
 import io
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from tokenize import TokenError
 from typing import Any, Final
 
 import numpy as np
 
-from lcs.faults import LearnerError
 from lcs.saving import KINDS, as_bytes, from_bytes
 from specc.faults import fault
 from specc.files import write_atomically
+from specc.kept import UNREADABLE
 from specc.learning.courses import Answered, Walked
 from specc.learning.run import Run
 
@@ -36,13 +33,6 @@ NARROW: Final = {
 
 OF_KINDS: Final[Mapping[str, Answered | Walked]] = {"StepsLearner": Walked.none()}
 """The course that a learner of this kind has; of all others `Answered`."""
-
-UNREADABLE: Final = (
-    *(LearnerError, KeyError, ValueError, EOFError),
-    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError),
-    *(TokenError, SyntaxError),  # of a header, which numpy reads before its checksum
-)
-"""What a file that is damaged anywhere raises while it is unpacked."""
 
 DAMAGED: Final = "delete it, and its run begins anew"
 

@@ -10,13 +10,10 @@ from runtime.run import Run, Seen, run
 from runtime.run_size import MOST, bytes_of, gigabytes
 from runtime.scenario import Scenario
 from runtime.scheduler.observer import Observer
-from runtime.user_code import UserCodeError
-from runtime.world.chipmunk import OtherPhysicsError
-from runtime.world.layout import NoRoomError
-from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.given import Value, seconds
 from specc.loading import beside_artifact, load_scenario
+from specc.scenarios.failures import ALLOW, told_failures
 from verifier.architectures.required import results_on
 from verifier.report.requirement_results import Outcome, RequirementResult
 
@@ -77,7 +74,8 @@ def simulate_scenario(
     if duration is not None:
         scenario = dataclasses.replace(scenario, duration=whole(seconds(duration), scenario.step))
     _refuse_too_large(scenario, light_every)
-    try:
+    allow = "" if allow_code else ALLOW
+    with told_failures(scenario, allow):
         made = run(
             scenario,
             allow_code=allow_code,
@@ -87,14 +85,6 @@ def simulate_scenario(
             seen=seen,
             progress=lambda done, of: tell("running", done, of),
         )
-    except NoRoomError as error:
-        raise _no_room(scenario, error) from error
-    except OtherPhysicsError as error:
-        remedy = "install pymunk 7.3.1, on a machine of 64 bits"
-        raise fault("V384", scenario.source.file, str(error), remedy) from error
-    except UserCodeError as error:
-        remedy = "" if allow_code else "read that code, then run it with --allow-code"
-        raise fault("V382", scenario.source.file, str(error), remedy) from error
     tell("judging", 1, 1)
     return Simulation(made, required_of(made))
 
@@ -119,11 +109,6 @@ def _refuse_too_large(scenario: Scenario, light_every: float | None) -> None:
         f"of which {gigabytes(MOST)} are allowed"
     )
     raise fault("V383", scenario.source.file, message, "take a shorter --duration")
-
-
-def _no_room(scenario: Scenario, error: NoRoomError) -> SpecError:
-    remedy = "or try another --seed"
-    return fault("V381", error.origin or scenario.source.file, str(error), remedy)
 
 
 def _in_silence(_what: str, _done: int, _of: int) -> None:

@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from time import process_time
 from typing import Final, final
 
 import numpy as np
@@ -29,11 +30,15 @@ TRIES: Final = 1
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Task:
-    """An episode to live: the world's seed, what decides, and how much it explores."""
+    """An episode to live: the world's seed, what decides, and how much it explores.
+
+    tries: sets what it tries apart from what another episode in the same world does.
+    """
 
     world: int
     policy: Policy
     explore: float
+    tries: int = 0
 
 
 @final
@@ -42,13 +47,16 @@ class Episode:
     """What came of an episode.
 
     total: the sum of its rewards. seconds: how long it lasted. outcomes: of what the scenario
-    requires, as far as it went.
+    requires, as far as it went. running, rewarding: seconds of the processor, of the world with all
+    that decides and acts in it, and of measuring and rewarding.
     """
 
     steps: Steps
     total: float
     seconds: float
     outcomes: tuple[Outcome, ...]
+    running: float
+    rewarding: float
 
     @property
     def succeeded(self) -> bool:
@@ -62,30 +70,36 @@ class _Course:
     """How it went: rows (T, q) of quantities, one after each step of the world.
 
     decided (D + 1,): the row that each decision was made at, and the row where the last one's
-    reward is due. ends: whether the episode ended with that.
+    reward is due. ends: whether the episode ended with that. running: seconds of the processor, of
+    the run alone.
     """
 
     rows: Array
     decided: Integers
     ends: bool
+    running: float
 
 
-def lived(scenario: Scenario, task: Task) -> Episode:
+def lived(scenario: Scenario, task: Task, ticks: LastTicks | None = None) -> Episode:
     """Live one episode of a scenario that trains; it ends where that says so, or with the run.
+
+    ticks: who observes it, if anybody else does.
 
     Raises:
         NoRoomError: there is no room for what is placed at random.
         UserCodeError: the scenario needs Python of the user's own.
     """
-    training = training_of(scenario)
+    began = process_time()
+    training, arbiter = training_of(scenario), trained_arbiter(scenario)
     scenario = dataclasses.replace(scenario, seed=task.world)
     exploring = Exploring(
         task.policy,
-        len(trained_arbiter(scenario).choices),
+        len(arbiter.reads),
+        len(arbiter.choices),
         task.explore,
-        np.random.default_rng([task.world, TRIES]),
+        np.random.default_rng([task.world, TRIES, task.tries]),
     )
-    ticks = LastTicks()
+    ticks = ticks or LastTicks()
     learners = {training.arbiter: Learner(exploring, _nothing)}
     begun = started(scenario, learners=learners, observer=ticks)
     demands = [each.requirement for each in training.measures if each.requirement is not None]
@@ -102,6 +116,8 @@ def lived(scenario: Scenario, task: Task) -> Episode:
         total=float(rewards.sum()),
         seconds=float(times[-1]),
         outcomes=tuple(result.outcome for result in results[:own]),
+        running=course.running,
+        rewarding=process_time() - began - course.running,
     )
 
 
@@ -134,20 +150,27 @@ def _course(
     """Run until it is over; whether it is, is asked at each decision."""
     rows: list[list[float]] = []
     decided: list[int] = []
+    running = 0.0
+
+    def course(end: int, *, ends: bool) -> _Course:
+        until = [*decided, end] if ends else decided
+        return _Course(np.array(rows[: end + 1]), np.array(until), ends, running)
+
     for instant in range(max(round(scenario.duration / scenario.step), 1)):
+        began = process_time()
         scheduler.step()
+        running += process_time() - began
         rows.append(live.now())
         if len(exploring.choices) > len(decided):
             over = _over(training, rows, decided, instant)
             if over >= 0:
-                return _Course(np.array(rows[: over + 1]), np.array([*decided, over]), ends=True)
+                return course(over, ends=True)
             decided.append(max(instant - 1, 0))
     over = _over(training, rows, decided, len(rows))
     if over >= 0:
-        return _Course(np.array(rows[: over + 1]), np.array([*decided, over]), ends=True)
-    if any(measure.how is How.ROBUSTNESS for measure in training.measures):
-        return _Course(np.array(rows), np.array([*decided, len(rows) - 1]), ends=True)
-    return _Course(np.array(rows), np.array(decided), ends=False)
+        return course(over, ends=True)
+    is_judged_whole = any(measure.how is How.ROBUSTNESS for measure in training.measures)
+    return course(len(rows) - 1, ends=is_judged_whole)
 
 
 def _over(

@@ -15,8 +15,12 @@ LONGEST_TRY = 8
 class Exploring:
     """Decides by a policy, or by chance, and keeps what it read and chose.
 
-    explore: the share of decisions at which, were it not for tries that go on, a try begins.
-    chance: of its tries.
+    Args:
+        policy: of what it reads.
+        reads: how many these are; what it is given besides (its controls) no rule is about.
+        choices: how many there are.
+        explore: the share of decisions at which, were it not for tries that go on, a try begins.
+        chance: of its tries.
 
     Attributes:
         reads: (m,) at each decision so far.
@@ -24,9 +28,15 @@ class Exploring:
     """
 
     def __init__(
-        self, policy: Policy, choices: int, explore: float, chance: np.random.Generator
+        self,
+        policy: Policy,
+        reads: int,
+        choices: int,
+        explore: float,
+        chance: np.random.Generator,
     ) -> None:
-        self._policy, self._count, self._explore, self._chance = policy, choices, explore, chance
+        self._policy, self._explore, self._chance = policy, explore, chance
+        self._reads, self._count = reads, choices
         self._left, self._tried = 0, 0
         self.reads: list[Array] = []
         self.choices: list[int] = []
@@ -36,7 +46,7 @@ class Exploring:
 
     def decide(self, reads: Array, time: float) -> Array:  # noqa: ARG002  # the policy has no clock
         """1 for the choice."""
-        x = np.array(reads)
+        x = np.array(reads[: self._reads])
         if self._left == 0 and self._chance.random() < self._explore:
             self._left = 1 + int(self._chance.integers(LONGEST_TRY))
             self._tried = int(self._chance.integers(self._count))

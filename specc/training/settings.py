@@ -13,6 +13,7 @@ class Settings:
     learnt anew and tried. explore: the share of decisions at which a try begins, once there is a
     policy. tried_in: worlds in which each policy is tried, the same for all; the best is kept.
     patience: it stops early after so many policies that were no better. rules: at most.
+    again: at most this share of the next episodes explores worlds that the last policy failed in.
     seed: of all chance.
     """
 
@@ -23,4 +24,5 @@ class Settings:
     tried_in: int = 40
     patience: int = 4
     rules: int = 12
+    again: float = 0.25
     seed: int = 0

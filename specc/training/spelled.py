@@ -1,6 +1,7 @@
 """Learned rules as they stand in an arbiter's YAML, and an arbiter's text with them in it."""
 
 from collections.abc import Iterator, Sequence
+from typing import TypeGuard
 
 import numpy as np
 
@@ -45,26 +46,21 @@ def _edits(by: Node, arbiter: Arbiter, learner: str, rules: DecisionList) -> Ite
     otherwise = arbiter.choices[rules.otherwise]
     own = by.entries[learner].value if isinstance(by, Mapping) and learner in by.entries else None
     lines, data = _rules(arbiter, rules)
-    if not isinstance(own, Mapping):
-        content = {"otherwise": otherwise, "rules": data}
-        yield NewLines(("by",), (f"{learner}:", *_inner(otherwise, lines)), {learner: content})
-    elif set(own.entries) == {"otherwise", "rules"} and data and _stands_in_lines(own):
+    content: dict[str, Plain] = {"otherwise": otherwise, "rules": data}
+    if _stands_in_lines(own) and set(own.entries) == set(content) and data:
         yield NewText(("by", learner, "otherwise"), otherwise)
         yield NewLines(("by", learner, "rules"), tuple(lines), data)
-    elif _stands_in_lines(by):
-        content = {"otherwise": otherwise, "rules": data}
-        inner = [line.removeprefix("  ") for line in _inner(otherwise, lines)]
+        return
+    inner = [f"otherwise: {_quoted(otherwise)}", *_listed(lines)]
+    if own is not None and _stands_in_lines(by):
         yield NewLines(("by", learner), tuple(inner), content)
     else:
-        content = {"otherwise": otherwise, "rules": data}
-        yield NewLines(("by",), (f"{learner}:", *_inner(otherwise, lines)), {learner: content})
+        below = (f"{learner}:", *(f"  {line}" for line in inner))
+        yield NewLines(("by",), below, {learner: content})
 
 
-def _inner(otherwise: str, lines: Sequence[str]) -> list[str]:
-    """What stands below the learner's name."""
-    if not lines:
-        return [f"  otherwise: {_quoted(otherwise)}", "  rules: []"]
-    return [f"  otherwise: {_quoted(otherwise)}", "  rules:", *(f"    {line}" for line in lines)]
+def _listed(lines: Sequence[str]) -> list[str]:
+    return ["rules:", *(f"  {line}" for line in lines)] if lines else ["rules: []"]
 
 
 def _rules(arbiter: Arbiter, rules: DecisionList) -> tuple[list[str], list[Plain]]:
@@ -108,7 +104,7 @@ def _value(node: Node, key: str) -> Node:
     return node.entries[key].value
 
 
-def _stands_in_lines(node: Node) -> bool:
+def _stands_in_lines(node: Node | None) -> TypeGuard[Mapping]:
     """Whether a mapping is written with its keys one below the other."""
     if not isinstance(node, Mapping) or not node.entries:
         return False

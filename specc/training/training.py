@@ -1,8 +1,9 @@
 """Training: explore, learn from all that was lived, try what was learnt, and keep the best."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import TypeAlias, final
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+from typing import Final, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ from lcs.arrays import Array, Integers
 from lcs.policies.decision_list import DecisionList
 from lcs.policies.learner import Found, found_policy
 from lcs.policies.policy import Policy
+from lcs.policies.shortened import shortened
 from lcs.policies.steps import Steps, joined
 from runtime.arbiter import Arbiter
 from runtime.scenario import Scenario
@@ -19,17 +21,35 @@ from specc.training.settings import Settings
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
+EXPLORING: Final = "exploring"
+AGAIN: Final = 2
+"""What sets the chance of which worlds are explored again apart from other chance."""
+
 Progress: TypeAlias = Callable[[str, int, int], None]
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """How a policy did in some worlds: means of episodes, `success` a share of them."""
+    """How a policy did in some worlds: means of episodes, `success` a share of them.
+
+    decisions: of all episodes together.
+    """
 
     reward: float
     success: float
     seconds: float
+    decisions: int
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Took:
+    """Seconds of the computer: for exploring, for learning and for trying."""
+
+    exploring: float
+    learning: float
+    trying: float
 
 
 @final
@@ -37,20 +57,23 @@ class Trial:
 class Generation:
     """A policy that was learnt: after how many episodes and decisions, and how it did.
 
-    explored: the episodes that it was learnt from last. tried: the policy itself.
+    explored: the episodes that it was learnt from last. tried: the policy itself. failed: numbers
+    of the worlds where that failed. took: no part of what follows from the seed.
     """
 
     episodes: int
     decisions: int
     explored: Trial
     tried: Trial
+    failed: tuple[int, ...]
     rules: DecisionList
+    took: Took
 
 
 @final
 @dataclass(slots=True)
 class Course:
-    """A training so far: everything that it goes on from."""
+    """A training so far: everything that it goes on from; `lived` has an entry per episode."""
 
     lived: list[Steps] = field(default_factory=list)
     generations: list[Generation] = field(default_factory=list)
@@ -60,13 +83,21 @@ class Course:
         """The policy that was worth most; of equal ones the first."""
         return max(self.generations, key=lambda each: each.tried.reward)
 
+    @property
+    def episodes(self) -> int:
+        """How many were lived to learn from."""
+        return self.generations[-1].episodes if self.generations else 0
+
     def is_over(self, settings: Settings) -> bool:
         """Whether all episodes are lived, or it got no better for long enough."""
         if not self.generations:
             return False
-        last = len(self.generations) - 1
-        behind = last - self.generations.index(self.best)
-        return self.generations[-1].episodes >= settings.episodes or behind >= settings.patience
+        return self.episodes >= settings.episodes or self.is_stale(settings)
+
+    def is_stale(self, settings: Settings) -> bool:
+        """Whether it got no better for long enough."""
+        behind = len(self.generations) - 1 - self.generations.index(self.best)
+        return behind >= settings.patience
 
 
 @final
@@ -92,8 +123,8 @@ def go_on(
     Everything that a generation does follows from the steps lived so far, the settings and its
     number. So a training that was interrupted goes on as if it had not been.
 
-    tell: is told what is done, how much of it, and of how much. keep: is called after each
-    generation.
+    tell: is told how it stands, how many episodes are lived, and of how many. keep: is called
+    after each generation.
     """
     while not course.is_over(settings):
         course.generations.append(_generation(course, scenario, settings, workers, tell))
@@ -103,26 +134,59 @@ def go_on(
 def _generation(
     course: Course, scenario: Scenario, settings: Settings, workers: Workers, tell: Progress
 ) -> Generation:
-    before = course.generations[-1].episodes if course.generations else 0
-    count = min(settings.each, settings.episodes - before)
-    policy: Policy = course.generations[-1].rules if course.generations else AtRandom()
-    explore = settings.explore if course.generations else 1.0
-    worlds = [world(For.LEARNING, before + i, settings.seed) for i in range(count)]
-    episodes = _lived(workers, [Task(each, policy, explore) for each in worlds], "exploring", tell)
-    tell("learning", 0, 1)
+    before, standing = course.episodes, _standing(course)
+    tasks = exploring_tasks(course, settings)
+    after = before + len(tasks)
+
+    def told(what: str, done: int, of: int) -> None:
+        lived = before + done if what == EXPLORING else after
+        tell(f"{what} {done} of {of}{standing}", lived, settings.episodes)
+
+    clock = [perf_counter()]
+    episodes = live_through(workers, tasks, EXPLORING, told)
+    clock.append(perf_counter())
+    tell(f"learning{standing}", after, settings.episodes)
     lived = [*course.lived, *(episode.steps for episode in episodes)]
     found = policy_of(lived, scenario, settings, len(course.generations))
-    tried = trial(found.rules, settings.tried_in, For.CHOOSING, workers, "trying", tell)
+    clock.append(perf_counter())
+    tries = trial_tasks(found.rules, settings.tried_in, For.CHOOSING)
+    tried = live_through(workers, tries, "trying", told)
+    clock.append(perf_counter())
     course.lived = lived
-    decisions = sum(len(steps) for steps in lived)
-    return Generation(before + count, decisions, trial_of(episodes), tried, found.rules)
+    return Generation(
+        episodes=after,
+        decisions=sum(len(steps) for steps in lived),
+        explored=trial_of(episodes),
+        tried=trial_of(tried),
+        failed=tuple(i for i, each in enumerate(tried) if not each.succeeded),
+        rules=found.rules,
+        took=Took(*np.diff(clock).tolist()),
+    )
+
+
+def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
+    """The next episodes: in new worlds, and in some of those that the last policy failed in."""
+    before, number = course.episodes, len(course.generations)
+    count = min(settings.each, settings.episodes - before)
+    new = [world(For.LEARNING, before + i, settings.seed) for i in range(count)]
+    if not course.generations:
+        return [Task(each, AtRandom(), 1.0, before + i) for i, each in enumerate(new)]
+    last = course.generations[-1]
+    chance = np.random.default_rng([settings.seed, number, AGAIN])
+    failed = chance.permutation(last.failed)[: int(settings.again * count)].tolist()
+    again = [world(For.CHOOSING, int(i)) for i in failed]
+    worlds = [*again, *new[len(again) :]]
+    return [Task(each, last.rules, settings.explore, before + i) for i, each in enumerate(worlds)]
 
 
 def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, number: int) -> Found:
-    """What is learnt from all steps so far, in the generation of that number."""
-    arbiter = trained_arbiter(scenario)
-    return found_policy(
-        joined(lived),
+    """What is learnt from all steps so far, in the generation of that number.
+
+    Its rules have bounds of few digits, and decide on these steps as those that were learnt.
+    """
+    arbiter, steps = trained_arbiter(scenario), joined(lived)
+    found = found_policy(
+        steps,
         ranges_of(arbiter),
         len(arbiter.choices),
         discount=training_of(scenario).discount,
@@ -130,22 +194,19 @@ def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, nu
         seed=settings.seed + number,
         most=settings.rules,
     )
+    return replace(found, rules=shortened(found.rules, steps.x))
 
 
 def ranges_of(arbiter: Arbiter) -> tuple[Array, Array]:
-    """The lowest and the highest of what it reads and of its controls, (m,) each, SI."""
-    read = [(each.low, each.high) for each in arbiter.reads]
-    read += [(each.low, each.high) for each in arbiter.controls]
-    low, high = np.array(read).reshape(-1, 2).T
-    return low, high
+    """The lowest and the highest of what it reads, (m,) each, SI; of a value by name its index."""
+    low = [0.0 if each.values else each.low for each in arbiter.reads]
+    high = [float(len(each.values) - 1) if each.values else each.high for each in arbiter.reads]
+    return np.array(low), np.array(high)
 
 
-def trial(
-    policy: Policy, worlds: int, purpose: For, workers: Workers, what: str, tell: Progress
-) -> Trial:
-    """How a policy does, without exploring, in the worlds of a purpose."""
-    tasks = [Task(world(purpose, i), policy, 0.0) for i in range(worlds)]
-    return trial_of(_lived(workers, tasks, what, tell))
+def trial_tasks(policy: Policy, worlds: int, purpose: For, explore: float = 0.0) -> list[Task]:
+    """Episodes of a policy in the worlds of a purpose, the same for all policies."""
+    return [Task(world(purpose, i), policy, explore) for i in range(worlds)]
 
 
 def trial_of(episodes: Sequence[Episode]) -> Trial:
@@ -154,13 +215,30 @@ def trial_of(episodes: Sequence[Episode]) -> Trial:
         reward=float(np.mean([each.total for each in episodes])),
         success=float(np.mean([each.succeeded for each in episodes])),
         seconds=float(np.mean([each.seconds for each in episodes])),
+        decisions=sum(len(each.steps) for each in episodes),
     )
 
 
-def _lived(workers: Workers, tasks: Sequence[Task], what: str, tell: Progress) -> list[Episode]:
-    episodes = []
+def live_through(
+    workers: Workers, tasks: Sequence[Task], what: str, tell: Progress
+) -> list[Episode]:
+    """All episodes, in their order; `tell` is told `what`, how many are done, and of how many."""
+    episodes: list[Episode] = []
     tell(what, 0, len(tasks))
     for episode in workers.lived(tasks):
         episodes.append(episode)
         tell(what, len(episodes), len(tasks))
     return episodes
+
+
+def _standing(course: Course) -> str:
+    """How the last policy did, and the best if that is another."""
+    if not course.generations:
+        return ""
+    best, last = course.best, course.generations[-1]
+    told = f"; last policy: {_did(last.tried)}"
+    return told if best is last else f"{told}; best: {_did(best.tried)}"
+
+
+def _did(tried: Trial) -> str:
+    return f"reward {tried.reward:.3g}, success {tried.success:.0%}"

@@ -1,11 +1,15 @@
 """Episodes over processes: in the same order, and the same, however many there are."""
 
+import os
 import signal
 import tempfile
+import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
 from functools import cache
+from multiprocessing import parent_process
+from multiprocessing.connection import wait
 from pathlib import Path
 from types import TracebackType
 from typing import Self, final
@@ -19,23 +23,25 @@ from specc.training.episode import Episode, Task, lived
 class Workers:
     """Lives episodes of one scenario; a context, at whose end its processes are gone.
 
+    They are gone soon, too, where this process is killed: each looks for it.
+
     Args:
         scenario: one that trains.
         processes: how many; with 1 it is done here.
     """
 
     def __init__(self, scenario: Scenario, processes: int) -> None:
-        self._scenario, self._processes = scenario, processes
+        self._scenario, self.processes = scenario, processes
         self._open = ExitStack()
         self._pool: ProcessPoolExecutor | None = None
         self._file = Path()
 
     def __enter__(self) -> Self:
-        if self._processes > 1:
+        if self.processes > 1:
             folder = self._open.enter_context(tempfile.TemporaryDirectory(prefix="specc-"))
             self._file = Path(folder) / "scenario.specc"
             self._file.write_bytes(to_bytes(self._scenario))
-            pool = ProcessPoolExecutor(self._processes, initializer=_leave_interrupts)
+            pool = ProcessPoolExecutor(self.processes, initializer=_begin)
             self._pool = self._open.enter_context(pool)
         return self
 
@@ -65,6 +71,14 @@ def _scenario_in(file: Path) -> Scenario:
     return from_bytes(file.read_bytes())
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C is for the process that waits for this one."""
+def _begin() -> None:
+    """Ctrl-C is for the process that waits for this one, and this one ends with that."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)

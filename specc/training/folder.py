@@ -1,0 +1,173 @@
+"""The folder of a training: what it is, the scenario that it was begun with, and where it stands.
+
+training.json     what is trained, and how
+scenario.specc    the scenario as it was, with the arbiter as it was
+checkpoint.npz    all that was lived, and each policy, to go on from
+...               the arbiter with its rules, curves and the summary, once it is done
+"""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final, final
+
+from runtime.arbiter import Arbiter, Rule
+from runtime.program import Origin
+from runtime.scenario import Robot, Scenario
+from runtime.scenario_artifact import to_bytes
+from specc.faults import fault
+from specc.files import json_bytes, write_atomically
+from specc.kept import record_in, refuse_file, refuse_taken
+from specc.loading import load_scenario
+from specc.training.checkpoint import CHECKPOINT, keep, taken_up
+from specc.training.episode import trained_arbiter, training_of
+from specc.training.settings import Settings
+from specc.training.training import Course
+
+TRAINING: Final = "training.json"
+SCENARIO: Final = "scenario.specc"
+SUMMARY: Final = "summary.txt"
+RECORD: Final = "summary.json"
+CURVES: Final = "curves.svg"
+VERSION: Final = 1
+"""Of the record of a training."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """What is trained, and how: all that its results follow from, beside the scenario itself.
+
+    scenario: its path, as it was named. held_out: worlds that are held out for judging.
+    """
+
+    scenario: str
+    settings: Settings
+    held_out: int
+
+
+def begin_in(folder: Path, begun: Begun, scenario: Scenario) -> None:
+    """Write what is trained, where nothing else is.
+
+    Raises:
+        SpecError: the folder holds a training (V411), is none or holds something that a training
+            would write over (V414), or can't be written (V347).
+    """
+    refuse_file(folder, "V414")
+    if (folder / TRAINING).exists():
+        remedy = f"`specc train --resume -o {folder}` goes on with it; or name another folder"
+        raise fault("V411", folder, "this folder holds a training already", remedy)
+    names = (SCENARIO, CHECKPOINT, SUMMARY, RECORD, CURVES, arbiter_name(scenario))
+    refuse_taken([folder / name for name in names], "V414", "training")
+    write_atomically(folder / SCENARIO, to_bytes(scenario))
+    record = {"version": VERSION, **asdict(begun)}
+    write_atomically(folder / TRAINING, json_bytes(record))
+
+
+def begun_in(folder: Path) -> Begun:
+    """What is trained there.
+
+    Raises:
+        SpecError: the folder holds no training (V411), or none that can be read (V412), or is no
+            folder (V414).
+        OSError: it can't be read.
+    """
+    refuse_file(folder, "V414")
+    path = folder / TRAINING
+    if not path.exists():
+        remedy = "name the folder that -o named; or leave --resume out"
+        raise fault("V411", folder, f"there is nothing to resume: no {TRAINING}", remedy)
+    return record_in(path, "V412", "training", _begun_of)
+
+
+def scenario_in(folder: Path, now: Scenario) -> Scenario:
+    """The scenario that a training was begun with; but for its rules it is as it is now.
+
+    Raises:
+        SpecError: it has changed (V413), or what is kept can't be read (V335).
+    """
+    kept = load_scenario(folder / SCENARIO).scenario
+    if _essence(kept) != _essence(now):
+        message = "the scenario, or a spec in it, has changed since the training was begun"
+        remedy = "put it back as it was; or begin again in another folder"
+        raise fault("V413", now.source.file, message, remedy)
+    return kept
+
+
+def course_in(folder: Path | None) -> Course:
+    """The training so far; a new one where nothing is kept.
+
+    Raises:
+        SpecError: what is kept can't be read (V412).
+        OSError: it can't be read.
+    """
+    if folder is None or not (folder / CHECKPOINT).exists():
+        return Course()
+    return taken_up(folder / CHECKPOINT)
+
+
+def keep_in(folder: Path | None, course: Course) -> None:
+    """Keep the training so far, if anywhere.
+
+    Raises:
+        SpecError: it can't be written (V347).
+    """
+    if folder is not None:
+        keep(course, folder / CHECKPOINT)
+
+
+def arbiter_name(scenario: Scenario) -> str:
+    """The file of the arbiter that is trained, in the folder."""
+    return Path(trained_arbiter(scenario).source.file).name
+
+
+def _begun_of(record: Mapping[str, Any]) -> Begun:
+    """What a record says.
+
+    Raises:
+        AttributeError, KeyError, TypeError, ValueError: it is no record of this version.
+    """
+    values = dict(record)
+    if values.pop("version") != VERSION:
+        raise ValueError("it is of another version")
+    settings = Settings(**values.pop("settings"))
+    for each in dataclasses.fields(Settings):
+        given, usual = getattr(settings, each.name), each.default
+        if type(given) is not type(usual):
+            raise TypeError(f"'{each.name}' has {given!r}")
+    return Begun(**values, settings=settings)
+
+
+def _essence(scenario: Scenario) -> bytes:
+    """All of a scenario but what its trained arbiter decides by, and where that is written."""
+    training, arbiter = training_of(scenario), trained_arbiter(scenario)
+    neutral = _neutral(arbiter)
+
+    def changed(robot: Robot) -> Robot:
+        if robot.name != training.robot:
+            return robot
+        arbiters = [neutral if one is arbiter else one for one in robot.architecture.arbiters]
+        made = dataclasses.replace(robot.architecture, arbiters=tuple(arbiters))
+        return dataclasses.replace(robot, architecture=made)
+
+    robots = tuple(changed(robot) for robot in scenario.robots)
+    return to_bytes(dataclasses.replace(scenario, robots=robots))
+
+
+def _neutral(arbiter: Arbiter) -> Arbiter:
+    """An arbiter without rules, and without the places of its parts in its file."""
+    parts: dict[str, Any] = {
+        key: tuple(dataclasses.replace(one, origin="") for one in getattr(arbiter, key))
+        for key in ("reads", "controls", "constants", "outputs")
+    }
+    return dataclasses.replace(
+        arbiter,
+        **parts,
+        rules=(Rule(0, None, None, 0.0, ""),),
+        agreement=None,
+        bindings=(),
+        judge_when=None,
+        source=Origin(arbiter.source.file, "", ""),
+        learner="alcsr",
+    )

@@ -1,0 +1,98 @@
+"""The best policy beside others, in worlds that no policy was learnt or chosen in."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+import numpy.typing as npt
+
+from lcs.arrays import Array, Integers
+from lcs.policies.learner import Found
+from lcs.policies.policy import Policy
+from runtime.arbiter import Arbiter
+from runtime.machine import evaluate
+from specc.training.training import AtRandom, Progress, Trial, live_through, trial_of, trial_tasks
+from specc.training.workers import Workers
+from specc.training.worlds import For
+from verifier.arbitration.shares import interval_of
+
+CONFIDENCE: Final = 0.95
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """How something that decides did in the worlds held out.
+
+    what: in a few words. rules: how many it has; None where it has none. low, high: the interval of
+    its success. failed: seeds of the worlds where it failed.
+    """
+
+    what: str
+    rules: int | None
+    trial: Trial
+    low: float
+    high: float
+    failed: tuple[int, ...]
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class AsItWas:
+    """The policy of an arbiter whose rules are boxes of what it reads."""
+
+    arbiter: Arbiter
+
+    def decide(self, inputs: npt.ArrayLike) -> Integers:
+        """The choices (T,) at reads (T, m)."""
+        x: Array = np.asarray(inputs, np.float64)
+        names = tuple(read.name for read in self.arbiter.reads)
+        choices = np.array([rule.choice for rule in self.arbiter.rules])
+        held = np.ones((len(x), len(choices)), np.bool_)
+        for place, rule in enumerate(self.arbiter.rules):
+            if rule.when is not None:
+                held[:, place] = evaluate([rule.when], names, x)[:, 0] != 0.0
+        chosen: Integers = choices[held.argmax(axis=1)]
+        return chosen
+
+
+def judged(
+    found: Found, arbiter: Arbiter, worlds: int, workers: Workers, tell: Progress
+) -> tuple[Judged, ...]:
+    """What was learnt, the same before compaction, the arbiter as it was, and chance.
+
+    arbiter: before training. worlds: how many, the same for all.
+    """
+    done: list[Judged] = []
+    beside = list(_beside(found, arbiter))
+    for what, rules, policy, explore in beside:
+
+        def told(_what: str, count: int, of: int, what: str = what) -> None:
+            so_far = len(done) * worlds
+            tell(f"judging in worlds held out: {what}, {count} of {of}", so_far + count, total)
+
+        total = len(beside) * worlds
+        tasks = trial_tasks(policy, worlds, For.JUDGING, explore)
+        episodes = live_through(workers, tasks, what, told)
+        seeds = [task.world for task in tasks]
+        succeeded = [each.succeeded for each in episodes]
+        low, high = interval(succeeded)
+        failed = tuple(s for s, good in zip(seeds, succeeded, strict=True) if not good)
+        done.append(Judged(what, rules, trial_of(episodes), low, high, failed))
+    return tuple(done)
+
+
+def interval(succeeded: Sequence[bool]) -> tuple[float, float]:
+    """Where the share of successes lies, after Clopper and Pearson (1934), with `CONFIDENCE`."""
+    found = interval_of(float(np.mean(succeeded)), len(succeeded), CONFIDENCE)
+    return found.low, found.high
+
+
+def _beside(found: Found, arbiter: Arbiter) -> Iterator[tuple[str, int | None, Policy, float]]:
+    """What is judged: its name, how many rules it has, its policy, and how much it tries."""
+    yield "what was learnt", len(found.rules), found.rules, 0.0
+    yield "all rules, by their vote", len(found.votes.table), found.votes, 0.0
+    if len(arbiter.rules) > 1:  # the last one always holds
+        yield "the arbiter as it was", len(arbiter.rules) - 1, AsItWas(arbiter), 0.0
+    yield "choices at random", None, AtRandom(), 1.0

@@ -1,0 +1,124 @@
+"""What came of a training: the arbiter with its rules, how it does, and what that took."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, final
+
+from compiler.architecture.arbiters import lower_arbiter
+from compiler.architecture.library import Library
+from compiler.findings import Findings
+from lcs.policies.decision_list import always
+from lcs.policies.learner import Found
+from runtime.arbiter import Arbiter
+from runtime.scenario import Scenario
+from spec_schema.arbiter import ArbiterSpec
+from spec_schema.diagnostics import Diagnostic
+from spec_schema.editing.edits import EditError
+from spec_schema.load import Loaded, load, load_source
+from spec_schema.source import Source
+from specc.faults import fault
+from specc.training.episode import Task, trained_arbiter
+from specc.training.folder import Begun
+from specc.training.judging import Judged, judged
+from specc.training.pace import Pace, paced
+from specc.training.spelled import with_rules
+from specc.training.training import Course, Progress, policy_of
+from specc.training.workers import Workers
+from specc.training.worlds import For, world
+
+BY_HAND: Final = "write `by:` with its learner on a line below, as in docs/training.md"
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Trained:
+    """What came of a training.
+
+    scenario: as it was begun with. source, edited: the arbiter's text, and that with its rules.
+    arbiter: compiled from the latter; warnings: on the way. course: all generations. found: what
+    was learnt at the best of them. judged: that beside others, where any worlds were held out.
+    """
+
+    begun: Begun
+    scenario: Scenario
+    source: Source
+    edited: Source
+    arbiter: Arbiter
+    warnings: tuple[Diagnostic, ...]
+    course: Course
+    found: Found
+    judged: tuple[Judged, ...]
+    pace: Pace
+    jobs: int
+
+
+def concluded(
+    begun: Begun,
+    scenario: Scenario,
+    loaded: Loaded,
+    course: Course,
+    workers: Workers,
+    tell: Progress,
+) -> Trained:
+    """What came of a training that is over.
+
+    Args:
+        begun: what was trained, and how.
+        scenario: as it was begun with.
+        loaded: the arbiter's text, as `text_of` reads it.
+        course: all that was lived and learnt.
+        workers: live the episodes in which it is judged.
+        tell: is told what is done, how much of it, and of how much.
+    """
+    tell("learning once more what was best", 0, 1)
+    found = best_found(course, scenario, begun)
+    before = trained_arbiter(scenario)
+    beside = judged(found, before, begun.held_out, workers, tell) if begun.held_out else ()
+    edited = with_rules(loaded, before, begun.settings.learner, found.rules)
+    arbiter, warnings = _compiled(edited)
+    tell("measuring the pace", 0, 1)
+    pace = paced(scenario, Task(world(For.CHOOSING, 0), found.rules, 0.0))
+    return Trained(
+        begun=begun,
+        scenario=scenario,
+        source=loaded.source,
+        edited=edited,
+        arbiter=arbiter,
+        warnings=warnings,
+        course=course,
+        found=found,
+        judged=beside,
+        pace=pace,
+        jobs=workers.processes,
+    )
+
+
+def best_found(course: Course, scenario: Scenario, begun: Begun) -> Found:
+    """The best policy with all the rules that its own were chosen from: these are not kept."""
+    best = course.best
+    number = course.generations.index(best)
+    return policy_of(course.lived[: best.episodes], scenario, begun.settings, number)
+
+
+def text_of(scenario: Scenario, learner: str) -> Loaded:
+    """The text of the arbiter that is trained, into which rules can be written.
+
+    Raises:
+        SpecError: it can't be read, or is written in a way that can't be changed in place (V415).
+    """
+    arbiter = trained_arbiter(scenario)
+    loaded = load(Path(arbiter.source.file))
+    try:
+        with_rules(loaded, arbiter, learner, always(0, len(arbiter.reads)))
+    except EditError as error:
+        message = f"rules can't be written into this arbiter: {error}"
+        raise fault("V415", arbiter.source.file, message, BY_HAND) from error
+    return loaded
+
+
+def _compiled(source: Source) -> tuple[Arbiter, tuple[Diagnostic, ...]]:
+    loaded = load_source(source)
+    assert isinstance(loaded.spec, ArbiterSpec), "it was one before its rules changed"
+    findings = Findings(loaded)
+    arbiter = lower_arbiter(loaded.spec, loaded, Library(), findings)
+    return arbiter, findings.diagnostics
