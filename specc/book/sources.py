@@ -11,6 +11,9 @@ from runtime.program import Program
 from runtime.scenario import Scenario
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.load import examine
+from spec_schema.node import plain
+from spec_schema.source import Source
+from spec_schema.yaml_reader import read
 from specc.book.origins import files_named
 from specc.faults import fault
 
@@ -50,9 +53,8 @@ def sources_of(path: Path, made: Architecture | Scenario, body: object = None) -
 
 def _refuse_absolute(file: Path) -> None:
     """A spec that names a file by where it lies on this machine can't be copied."""
-    loaded = examine(file).loaded if file.suffix in {".yaml", ".yml"} else None
-    texts = () if loaded is None else _texts(loaded.spec.model_dump())
-    for text in texts:
+    root = read(Source(str(file), file.read_text(encoding="utf-8")))
+    for text in _texts([plain(entry.value) for entry in root.entries.values()]):
         if Path(text).is_absolute() and Path(text).is_file():
             message = f"it names '{text}', which is another file, or none, on other machines"
             raise fault("V431", file, message, "name it by its path from this file: ../x.yaml")

@@ -122,6 +122,10 @@ def _decides(arbiter: Arbiter, shown: Shown, made: Architecture, names: Names) -
     if rules:
         rows = tuple((str(r.number), f"`{r.choice}`", _sentence(r.sentence)) for r in rules)
         yield Table(("", "choice", "holds"), rows)
+        if arbiter.controls:
+            yield Paragraph(
+                "In brackets stand the values at the defaults of its controls.", is_small=True
+            )
         if any(rule.until is not None for rule in arbiter.rules):
             yield Paragraph(
                 "A rule that has begun to hold goes on until its end is met, even where its own"
@@ -185,6 +189,11 @@ def _plan(plan: Program, shown: Shown, made: Architecture, names: Names) -> Iter
             for c in plan.controls
         )
         yield Table(("the plan's control", "range", "held at", "what it does"), rows)
+    if plan.constants:
+        constants = tuple(
+            (f"`{c.name}`", exact(c.value, c.unit), c.about or NOTHING) for c in plan.constants
+        )
+        yield Table(("the plan's constant", "value", "what it is"), constants)
     for index, value in enumerate(values):
         yield Heading(f"While the choice is `{value}`")
         yield Bullets(tuple(mode_ways(plan, index, values)) or ("It is never left.",))

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from runtime.architecture import Architecture, Node
 from runtime.program import Guard, Program, Role, State
-from spec_schema.field_modes import Modes
 from specc.book.chapters import (
     Block,
     Bullets,
@@ -24,9 +23,9 @@ from specc.book.words.acting import acting_section, timing_sentences
 from specc.book.words.data import data_section
 from specc.book.words.faithful import faithful_section
 from specc.book.words.quantities import NOTHING, SECOND, exact, range_of, unit_of
-from specc.book.words.source import author_words, behavior_spec, spec_section
+from specc.book.words.source import author_words, conditions_of, formulas_of, spec_section
 from specc.book.words.topology import topology_blocks
-from specc.book.words.wiring import source_of
+from specc.book.words.wiring import source_of, value_of
 from specc.figures.quantities import rate_of
 
 ROLES = {
@@ -114,7 +113,7 @@ def _is_read(state: State, node: Node) -> bool:
 def _kept(state: State, program: Program) -> str:
     if state.name == program.field.mode:
         return "its own memory: the mode it is in"
-    return "its own memory" if state.is_driven else f"nobody: {exact(state.hold, state.unit)}"
+    return "not read, only moved" if state.is_driven else f"held at {value_of(state, state.hold)}"
 
 
 def _controls(program: Program, made: Architecture, node: Node, names: Names) -> Iterator[Block]:
@@ -197,25 +196,27 @@ FORMS = {
 
 
 def _rates(program: Program, index: int = -1) -> Iterator[tuple[str, str, str]]:
-    labels, field = labels_of(program), program.field
-    units = {state.name: state.unit for state in program.states}
+    """A formula for each driven state, in one mode or in all; as their author wrote them."""
+    field = program.field
+    units = {state.name: state.unit.text for state in program.states}
+    own = formulas_of(program, index)
     for name, code in zip(field.driven, field.formula or (), strict=False):
         left = f"{name} next" if field.is_map else rate_of(name)
-        shown = written(code, labels)
-        if index >= 0:
-            shown = of_tree(in_mode(code, field.mode, index), labels)
-        unit = units[name].text
-        remark = f"in {unit}" if field.is_map else f"in {per_second(unit)}"
-        yield (left, shown, remark)
+        tree = in_mode(code, field.mode if index >= 0 else "", index)
+        right = plain(own[name]) if name in own else of_tree(tree, labels_of(program))
+        unit = units[name] if field.is_map else per_second(units[name])
+        yield (left, right, f"in {unit}" if unit not in {"", "1"} else "")
 
 
 def _modes(program: Program) -> Iterator[Block]:
     field = program.field
-    values = next(s.values for s in program.states if s.name == field.mode)
+    mode = next(s for s in program.states if s.name == field.mode)
+    values = mode.values
     yield Paragraph(
         f"It has a memory: `{field.mode}` is the mode that it is in, one of"
         f" {', '.join(f'`{v}`' for v in values)}. Each mode has a field of its own, and is left as"
-        " soon as one of its conditions holds; between two ticks too."
+        " soon as one of its conditions holds; between two ticks too. It begins in"
+        f" `{value_of(mode, mode.hold)}`, where nothing else is said."
     )
     for index, value in enumerate(values):
         yield Heading(f"While `{field.mode}` is `{value}`")
@@ -227,19 +228,10 @@ def _modes(program: Program) -> Iterator[Block]:
 def mode_ways(program: Program, index: int, values: tuple[str, ...]) -> Iterator[str]:
     """How a mode is left, a sentence for each way."""
     guards = [guard for guard in program.field.guards if guard.mode == index]
-    own = _conditions(program, values[index])
+    own = conditions_of(program, values[index])
     for k, guard in enumerate(guards):
-        when = own[k] if k < len(own) else f"{written(guard.condition)} ≥ 0"
+        when = plain(own[k]) if k < len(own) else f"{written(guard.condition)} ≥ 0"
         yield f"to `{values[guard.target]}` where `{when}`{_resets(program, guard)}"
-
-
-def _conditions(program: Program, mode: str) -> list[str]:
-    """The conditions of the ways out of a mode, as their author wrote them."""
-    spec = behavior_spec(program)
-    form = spec.field.form if spec is not None else None
-    if not isinstance(form, Modes) or mode not in form.each:
-        return []
-    return [plain(way.when) for way in form.each[mode].leave]
 
 
 def _resets(program: Program, guard: Guard) -> str:
