@@ -25,7 +25,7 @@ from lcs.arrays import Array, Integers
 from lcs.encoding import Encoding
 from lcs.faults import LearnerError
 from lcs.inputs import Input
-from lcs.intake import Intake, Missing, OutOfRange, without_gaps
+from lcs.intake import Intake, Missing, OutOfRange, refuse_parameters, without_gaps
 from lcs.problems.rewards import RIGHT, WRONG, rewards_of
 from lcs.rules.belief import Belief, believe
 from lcs.rules.table import RuleTable
@@ -90,7 +90,7 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
         uncovered: what `predict` says where no rule for the most probable class holds. "nearest":
             that class; it is the one whose rules are nearest among those that nothing speaks
             against. "refuse": an error that names the row. Anything else is itself the answer,
-            such as -1 or "unknown".
+            such as -1 or "unknown"; but a text that is one of the two misspelt is refused.
         random_state: an integer for the same rules in each run.
 
     Attributes:
@@ -266,6 +266,7 @@ class ALCSRClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # 
 
     def _read(self, X: Any, y: Any, *, first: bool) -> tuple[Array, npt.NDArray[Any]]:
         """Rows and labels, of the same length."""
+        refuse_parameters(self.examples, self.inputs, self.uncovered)
         x = self._numbers(X, first=first)
         if y is None:
             raise LearnerError("fit requires y to be passed, but the target y is None")

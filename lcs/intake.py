@@ -7,12 +7,14 @@ are exact in the user's numbers.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Literal, Self, TypeAlias, final
+from difflib import get_close_matches
+from typing import Any, Final, Literal, Self, TypeAlias, final
 
 import numpy as np
 
 from lcs.arrays import Array, Integers
 from lcs.faults import LearnerError
+from lcs.given import count_of
 from lcs.inputs import Input
 
 Missing: TypeAlias = Literal["refuse", "any"]
@@ -20,6 +22,8 @@ OutOfRange: TypeAlias = Literal["clip", "refuse", "as it is"]
 
 MISSING: Final = ("refuse", "any")
 OUT_OF_RANGE: Final = ("clip", "refuse", "as it is")
+UNCOVERED: Final = ("nearest", "refuse")
+"""What is done where no rule holds, unless an answer is given instead."""
 
 
 @final
@@ -167,3 +171,22 @@ def without_gaps(x: Array, low: Array, high: Array, chance: np.random.Generator)
 def _refuse_unknown(name: str, given: str, known: Sequence[str]) -> None:
     if given not in known:
         raise LearnerError(f"{name} is {given!r}: known are {', '.join(map(repr, known))}")
+
+
+def refuse_parameters(examples: Any, inputs: Sequence[Any] | None, uncovered: Any) -> None:
+    """Refuse what would become an answer, or an error far from where it was written.
+
+    Raises:
+        LearnerError: one is not what it has to be, or a text nearly one of `UNCOVERED`.
+    """
+    count_of(examples, "examples")
+    for each in () if inputs is None else inputs:
+        if not isinstance(each, Input):
+            raise LearnerError(f"inputs are a list of specc.Input, and {each!r} is none")
+    if not isinstance(uncovered, str) or uncovered in UNCOVERED:
+        return
+    for near in get_close_matches(uncovered.strip().lower(), UNCOVERED, n=1, cutoff=0.8):
+        raise LearnerError(
+            f"uncovered is {uncovered!r}; did you mean {near!r}? Choices are 'nearest' and "
+            "'refuse', and any other value is itself the answer"
+        )

@@ -23,6 +23,30 @@ def learnt(count: int = 500, **settings: Any) -> tuple[ALCSRClassifier, Array, A
     return found.fit(x * METRES, right), x * METRES, right
 
 
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"uncovered": "nearst"}, "uncovered is 'nearst'; did you mean 'nearest'. Choices are"),
+        ({"uncovered": "Refuse "}, "did you mean 'refuse'"),
+        ({"missing": "ani"}, "missing is 'ani': known are 'refuse', 'any'"),
+        ({"out_of_range": "clipp"}, "out_of_range is 'clipp': known are 'clip', 'refuse'"),
+        ({"examples": "many"}, "examples is a whole number of 1 or more, and 'many' is none"),
+        ({"inputs": ["front", "left"]}, "inputs are a list of specc.Input, and 'front' is none"),
+        ({"config": 0.5}, "and 0.5 is none"),
+    ],
+)
+def test_misspelt_choices_and_parameters_of_another_type_are_refused(
+    settings: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(LearnerError, match=said):
+        learnt(**settings)
+
+
+@pytest.mark.parametrize("answer", ["unknown", "nobody", "refused by hand", -1, None])
+def test_an_answer_is_no_misspelt_choice(answer: object) -> None:
+    learnt(20, examples=20, uncovered=answer)
+
+
 def by_hand(table: RuleTable, x: Array) -> tuple[list[float], list[bool]]:
     """The probabilities of one row, read from the rules in plain Python."""
     belief: list[float] = []
