@@ -43,8 +43,10 @@ Outcome: TypeAlias = OfModules | Unusable
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class How:
-    """How recordings are held against a book. program_of: of a spec that tells where things stand
-    in logs; spec: that one's path, None for what a log carries, or the book's own.
+    """How recordings are held against a book.
+
+    program_of: makes the spec that tells where in logs things stand. spec: the path of that one;
+    None: what a log carries, else what the project names.
     """
 
     program_of: Callable[[Path], Program | Arbiter]

@@ -3,7 +3,6 @@
 from runtime.arbiter import Arbiter
 from runtime.program import Program
 from spec_schema.diagnostics import SpecError
-from specc.book.loading import LoadedBook
 from specc.verifying.book_modules import Piece
 from verifier.procedure.behavior import procedure_of
 from verifier.procedure.remaining import remaining_runs
@@ -11,7 +10,7 @@ from verifier.procedure.wording import runs_in_words
 from verifier.report.examination import Examination
 
 
-def to_record(book: LoadedBook, piece: Piece, found: Examination | None) -> tuple[str, ...]:
+def to_record(piece: Piece, found: Examination | None) -> tuple[str, ...]:
     """Sentences; found: what was recorded shows, None where nothing of it was."""
     if isinstance(piece.spec, Arbiter):
         return () if found is None else found.report.advice

@@ -33,13 +33,13 @@ def book_verdict(book: LoadedBook, outcomes: Sequence[Outcome]) -> BookVerdict:
     pieces = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
     return BookVerdict(
         name=book.book.name,
-        modules=tuple(_module(book, piece, told) for piece in pieces),
+        modules=tuple(_module(piece, told) for piece in pieces),
         unusable=tuple(each for each in outcomes if isinstance(each, Unusable)),
         notes=(),
     )
 
 
-def _module(book: LoadedBook, piece: Piece, told: Sequence[OfModules]) -> ModuleVerdict:
+def _module(piece: Piece, told: Sequence[OfModules]) -> ModuleVerdict:
     mine = [each.outcome for each in told if piece.place in each.places]
     members = tuple(each for each in mine if isinstance(each, Verification))
     lost = tuple(each for each in mine if isinstance(each, NotJudged))
@@ -47,13 +47,13 @@ def _module(book: LoadedBook, piece: Piece, told: Sequence[OfModules]) -> Module
         return ModuleVerdict(piece, Standing.FREE, (), lost, None, (NOTHING,), ())
     if not members:
         why = tuple(dict.fromkeys(each.why for each in lost)) or (NEVER,)
-        needed = to_record(book, piece, None)
+        needed = to_record(piece, None)
         return ModuleVerdict(piece, Standing.LACKS, (), lost, None, why, needed)
     together = _together(piece, members)
     failing = [each for each in members if each.report.verdict is Verdict.FAIL]
     standing = Standing.FAILS if failing else STANDINGS[together.report.verdict]
     why = _why(together, failing)
-    needed = to_record(book, piece, together) if standing is Standing.LACKS else ()
+    needed = to_record(piece, together) if standing is Standing.LACKS else ()
     return ModuleVerdict(piece, standing, members, lost, together, why, needed)
 
 
@@ -68,7 +68,7 @@ def _together(piece: Piece, members: Sequence[Verification]) -> Examination:
 
 
 def _least(members: Sequence[Verification]) -> Program:
-    """The program that is judged in all recordings: what one does not measure, none is judged by."""
+    """The program without tolerances for what one of the recordings does not measure."""
     programs = [each.found.program for each in members if isinstance(each.found.program, Program)]
     kept = [set(p.fidelity.tolerance) for p in programs if p.fidelity is not None]
     first = programs[0]

@@ -34,7 +34,7 @@ def candidates(program: Program, fidelity: Fidelity, count: int, every: float) -
     inputs = inputs_of(program)
     stages = STAGES if inputs.any() else 1
     seconds = STAGE_HORIZONS * fidelity.horizon * STAGES / stages
-    drawn = _drawn(count, (stages + 1) * len(parts)).reshape(count, stages + 1, len(parts))
+    drawn = evenly(count, (stages + 1) * len(parts)).reshape(count, stages + 1, len(parts))
     values = np.stack(
         [_spread(program, each, drawn[..., i], fidelity) for i, each in enumerate(parts)],
         axis=-1,
@@ -44,7 +44,7 @@ def candidates(program: Program, fidelity: Fidelity, count: int, every: float) -
     return Plans(values[:, 0, :n], values[:, 1:], inputs, whole)
 
 
-def _drawn(count: int, axes: int) -> Array:
+def evenly(count: int, axes: int) -> Array:
     """Points (count, axes) in the unit cube, evenly spread."""
     ratio = 2.0
     for _ in range(64):
