@@ -88,7 +88,9 @@ def refuse_early(path: Path) -> None:
 
 
 def _files(path: Path) -> list[str]:
-    return [p.relative_to(path).as_posix() for p in path.rglob("*") if not p.is_dir()]
+    """All files but what Python leaves behind when the reader of tables is used."""
+    found = (p.relative_to(path) for p in path.rglob("*") if not p.is_dir())
+    return [name.as_posix() for name in found if "__pycache__" not in name.parts]
 
 
 def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
