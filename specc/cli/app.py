@@ -25,6 +25,7 @@ from specc.cli.replay import replay
 from specc.cli.schema import schema
 from specc.cli.simulate import simulate
 from specc.cli.status import Status
+from specc.cli.train import train
 from specc.cli.verify import verify
 from specc.cli.wiring import wiring
 
@@ -85,6 +86,7 @@ app.command("verify")(verify)
 app.command("explain")(explain)
 app.command("fit")(fit)
 app.command("learn")(learn)
+app.command("train")(train)
 app.command("schema")(schema)
 
 

@@ -1,5 +1,6 @@
 """The kernels are compiled once per installation; the user is told, and sees it progress."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from specc.cli.console import progress_bar, say
@@ -29,8 +30,19 @@ def warmed_learner(name: str) -> None:
     """Compile the kernels of a learner now if this installation has not done so yet."""
     from specc.learning.warming import is_warm, warm
 
-    if is_warm(name):
-        return
+    if not is_warm(name):
+        _compile(name, warm)
+
+
+def warmed_policies(name: str) -> None:
+    """Compile the kernels of a learner of policies now if this installation has not done so yet."""
+    from specc.training.warming import is_warm, warm
+
+    if not is_warm(name):
+        _compile(name, warm)
+
+
+def _compile(name: str, warm: Callable[[str], None]) -> None:
     say(f"first use: compiling the kernels of {name}, about a minute, once", "bold")
     with at_once(), progress_bar("kernels") as progress:
         progress(name, 0, 1)

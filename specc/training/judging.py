@@ -1,6 +1,6 @@
 """The best policy beside others, in worlds that no policy was learnt or chosen in."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -66,26 +66,26 @@ def judged(
     """
     done: list[Judged] = []
     beside = list(_beside(found, arbiter))
+    total = len(beside) * worlds
     for what, rules, policy, explore in beside:
 
         def told(_what: str, count: int, of: int, what: str = what) -> None:
             so_far = len(done) * worlds
             tell(f"judging in worlds held out: {what}, {count} of {of}", so_far + count, total)
 
-        total = len(beside) * worlds
         tasks = trial_tasks(policy, worlds, For.JUDGING, explore)
         episodes = live_through(workers, tasks, what, told)
         seeds = [task.world for task in tasks]
         succeeded = [each.succeeded for each in episodes]
-        low, high = interval(succeeded)
+        low, high = interval(float(np.mean(succeeded)), worlds)
         failed = tuple(s for s, good in zip(seeds, succeeded, strict=True) if not good)
         done.append(Judged(what, rules, trial_of(episodes), low, high, failed))
     return tuple(done)
 
 
-def interval(succeeded: Sequence[bool]) -> tuple[float, float]:
-    """Where the share of successes lies, after Clopper and Pearson (1934), with `CONFIDENCE`."""
-    found = interval_of(float(np.mean(succeeded)), len(succeeded), CONFIDENCE)
+def interval(success: float, worlds: int) -> tuple[float, float]:
+    """Where a share of so many worlds lies, after Clopper and Pearson (1934), by `CONFIDENCE`."""
+    found = interval_of(success, worlds, CONFIDENCE)
     return found.low, found.high
 
 

@@ -1,7 +1,10 @@
 """How an arbiter is trained: every number that a result depends on."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
+
+HELD_OUT: Final = 100
+"""Worlds in which the best policy is judged in the end."""
 
 
 @final

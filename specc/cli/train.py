@@ -1,0 +1,264 @@
+"""`specc train`: let an arbiter of a scenario learn what to choose, and write its rules."""
+
+from dataclasses import dataclass, fields
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, TypeAlias, final
+
+import typer
+
+from specc.cli.console import print_json, print_text, progress_bar, say, show_diagnostics
+from specc.cli.options import Format, FormatOption
+from specc.cli.portrait import StyleOption
+from specc.cli.status import Status
+from specc.cli.warming import warmed, warmed_policies
+from specc.figures.style_names import Style
+
+if TYPE_CHECKING:
+    from runtime.scenario import Scenario
+    from spec_schema.load import Loaded
+    from specc.training.folder import Begun
+    from specc.training.result import Trained
+    from specc.training.training import Course
+
+
+@final
+class PolicyLearner(StrEnum):
+    """Who learns."""
+
+    ALCSR = "alcsr"
+    XCSR = "xcsr"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What a user says of a new training; None where nothing is said."""
+
+    learner: PolicyLearner | None
+    episodes: int | None
+    held_out: int | None
+    rules: int | None
+    seed: int | None
+
+    @property
+    def is_something(self) -> bool:
+        """Whether anything is said."""
+        return any(getattr(self, each.name) is not None for each in fields(self))
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Output:
+    """What is done with the result."""
+
+    folder: Path | None
+    writes: bool
+    jobs: int
+    style: Style
+    form: Format
+
+
+ScenarioPath: TypeAlias = Annotated[
+    Path | None,
+    typer.Argument(help="A scenario (.yaml) that says what to `train`.", metavar="SCENARIO"),
+]
+By: TypeAlias = Annotated[
+    PolicyLearner | None,
+    typer.Option("--learner", "-l", help="Who learns; default: by whom the arbiter decides."),
+]
+Episodes: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--episodes", "-n", min=1, help="To learn from, at most; default 400."),
+]
+HeldOut: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--held-out", min=0, help="Worlds to judge in at the end; default 100."),
+]
+Rules: TypeAlias = Annotated[
+    int | None, typer.Option("--rules", min=1, help="Rules, at most; default 12.")
+]
+Seed: TypeAlias = Annotated[
+    int | None, typer.Option("--seed", min=0, help="What all chance follows from; default 0.")
+]
+Jobs: TypeAlias = Annotated[
+    int, typer.Option("--jobs", "-j", min=1, help="Processes; the result is the same.")
+]
+Folder: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="FOLDER",
+        help="Keep the training, the arbiter with its rules, curves and the summary there.",
+    ),
+]
+Resume: TypeAlias = Annotated[
+    bool, typer.Option("--resume", help="Go on with the training that is kept in FOLDER.")
+]
+Write: TypeAlias = Annotated[
+    bool, typer.Option("--write", help="Also write the rules into the arbiter's own file.")
+]
+
+
+def train(
+    scenario: ScenarioPath = None,
+    learner: By = None,
+    episodes: Episodes = None,
+    held_out: HeldOut = None,
+    rules: Rules = None,
+    seed: Seed = None,
+    jobs: Jobs = 1,
+    output: Folder = None,
+    resume: Resume = False,
+    write: Write = False,
+    style: StyleOption = Style.SCREEN,
+    form: FormatOption = Format.TEXT,
+) -> int:
+    """Let an arbiter of a scenario learn what to choose, and write what it learnt as rules.
+
+    The scenario says under `train` which arbiter learns, and what its decisions are rewarded for.
+    Episodes run in worlds at random. After some, all that was lived is learnt from anew, and the
+    policy is tried in the same worlds as the others. The best is kept, and judged in worlds held
+    out.
+
+    The result is the arbiter's own YAML with a short list of rules in it: in FOLDER, and with
+    --write in its place. All else in the file stays.
+
+    Ctrl-C stops it. What a folder keeps goes on with --resume, and ends as if it had never been
+    stopped; so does what was killed.
+
+    **Examples**
+
+    `specc train specs/scenarios/errand_learned.yaml -o out/errand --jobs 4`
+
+    `specc train --resume -o out/errand`
+
+    `specc train specs/scenarios/errand_learned.yaml --learner xcsr --rules 6 --format json`
+    """
+    asked = Asked(learner, episodes, held_out, rules, seed)
+    given = Output(output, write, jobs, style, form)
+    return _resumed(scenario, asked, given) if resume else _begun(scenario, asked, given)
+
+
+def _begun(path: Path | None, asked: Asked, given: Output) -> Status:
+    from specc.training.folder import Begun, begin_in
+    from specc.training.result import text_of
+    from specc.training.settings import HELD_OUT, Settings
+
+    if path is None:
+        raise typer.BadParameter("SCENARIO is missing: a .yaml that says what to `train`")
+    scenario = _scenario(path)
+    usual = Settings()
+    settings = Settings(
+        learner=_learner(scenario) if asked.learner is None else asked.learner.value,
+        episodes=asked.episodes or usual.episodes,
+        rules=asked.rules or usual.rules,
+        seed=asked.seed or usual.seed,
+    )
+    held_out = HELD_OUT if asked.held_out is None else asked.held_out
+    begun = Begun(str(path), settings, held_out)
+    text = text_of(scenario, settings.learner)
+    if given.folder is not None:
+        begin_in(given.folder, begun, scenario)
+    return _run(begun, scenario, text, given)
+
+
+def _resumed(path: Path | None, asked: Asked, given: Output) -> Status:
+    from specc.training.folder import begun_in, scenario_in
+    from specc.training.result import text_of
+
+    if given.folder is None:
+        raise typer.BadParameter("name the folder that --resume goes on with: -o FOLDER")
+    begun = begun_in(given.folder)
+    if asked.is_something or path not in {None, Path(begun.scenario)}:
+        raise typer.BadParameter(
+            f"--resume goes on with the training of {begun.scenario} that {given.folder} keeps, "
+            f"as it was begun: leave out what else is said"
+        )
+    now = _scenario(Path(begun.scenario))
+    text = text_of(now, begun.settings.learner)
+    return _run(begun, scenario_in(given.folder, now), text, given)
+
+
+def _scenario(path: Path) -> "Scenario":
+    """The scenario, which trains.
+
+    Raises:
+        SpecError: it is wrong, or trains nothing (V410).
+    """
+    from specc.faults import fault
+    from specc.loading import load_scenario
+
+    warmed(path)
+    with progress_bar("specc") as bar:
+        compiled = load_scenario(path, bar)
+    if compiled.scenario.training is None:
+        message = "this scenario trains nothing"
+        remedy = "say under `train` which arbiter learns, and from which reward"
+        raise fault("V410", path, message, remedy)
+    show_diagnostics(each for each in compiled.warnings if each.code != "S390")
+    return compiled.scenario
+
+
+def _learner(scenario: "Scenario") -> str:
+    """By whom the arbiter decides that is trained."""
+    from specc.training.episode import trained_arbiter
+
+    return trained_arbiter(scenario).learner
+
+
+def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) -> Status:
+    from specc.scenarios.failures import ALLOW, told_failures
+    from specc.training.folder import course_in, keep_in
+    from specc.training.result import concluded
+    from specc.training.training import go_on
+    from specc.training.workers import Workers
+
+    course = course_in(given.folder)
+    warmed_policies(begun.settings.learner)
+    try:
+        with told_failures(scenario, ALLOW), Workers(scenario, given.jobs) as workers:
+            with progress_bar(scenario.name) as bar:
+                go_on(
+                    *(course, scenario, begun.settings, workers, bar),
+                    keep=lambda: keep_in(given.folder, course),
+                )
+            with progress_bar(scenario.name) as bar:
+                trained = concluded(begun, scenario, text, course, workers, bar)
+    except KeyboardInterrupt:
+        return _stopped(begun, course, given.folder)
+    _write(trained, given)
+    _tell(trained, given.form)
+    return Status.YES
+
+
+def _stopped(begun: "Begun", course: "Course", folder: Path | None) -> Status:
+    """Say how far it came, and how it goes on."""
+    say(f"interrupted after {course.episodes:,} of {begun.settings.episodes:,} episodes", "bold")
+    if folder is None:
+        say("nothing was kept, since no folder was named: -o FOLDER")
+    else:
+        say(f"these are kept; go on with: specc train --resume -o {folder}")
+    return Status.INTERRUPTED
+
+
+def _write(trained: "Trained", given: Output) -> None:
+    from specc.training.written import write_all, write_in_place
+
+    if given.folder is not None:
+        with progress_bar(trained.scenario.name) as bar:
+            names = write_all(trained, given.folder, given.style, bar)
+        say(f"wrote {', '.join(names)} into {given.folder}", "bold")
+    if given.writes:
+        say(f"wrote the rules into {write_in_place(trained)}", "bold")
+
+
+def _tell(trained: "Trained", form: Format) -> None:
+    from specc.texts.training import training_record, training_text
+
+    show_diagnostics(trained.warnings)
+    if form is Format.JSON:
+        print_json(training_record(trained))
+    else:
+        print_text(training_text(trained))

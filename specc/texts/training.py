@@ -1,0 +1,153 @@
+"""What came of a training, as text for people and as a record for programs."""
+
+from dataclasses import asdict
+from typing import Any, Final
+
+from specc.texts.amounts import counted
+from specc.texts.arbiters import arbiter_record, arbiter_summary
+from specc.training.episode import training_of
+from specc.training.judging import CONFIDENCE, Judged
+from specc.training.result import Trained
+from specc.training.speed import Shares, shares_of
+from verifier.report.layout import INDENT, bullets, section, table, wrapped
+from verifier.report.wording import number
+
+FEW: Final = 5
+"""So many seeds of failures are told; the record has all."""
+SAME: Final = 1e-3
+"""A smaller share of the reward is no difference."""
+COLUMNS: Final = ("", "rules", "success (95 %)", "reward", "seconds")
+
+
+def training_text(trained: Trained) -> str:
+    """What was learnt, how well it does beside others, what it says, and what it took."""
+    parts = [_head(trained), _judged_text(trained), arbiter_summary(trained.arbiter)]
+    return "\n\n".join(part for part in (*parts, _speed_text(trained)) if part)
+
+
+def training_record(trained: Trained) -> dict[str, Any]:
+    """The same for programs, with each generation."""
+    begun, course = trained.begun, trained.course
+    return {
+        "scenario": begun.scenario,
+        "settings": asdict(begun.settings),
+        "held_out": begun.held_out,
+        "arbiter": arbiter_record(trained.arbiter),
+        "best": course.generations.index(course.best) + 1,
+        "generations": [
+            {
+                "episodes": each.episodes,
+                "decisions": each.decisions,
+                "explored": asdict(each.explored),
+                "tried": asdict(each.tried),
+                "failed": list(each.failed),
+                "rules": len(each.rules),
+                "took": asdict(each.took),
+            }
+            for each in course.generations
+        ],
+        "judged": [{**asdict(each), "failed": list(each.failed)} for each in trained.judged],
+        "confidence": CONFIDENCE,
+        "compaction": _compaction_record(trained),
+        "speed": asdict(shares_of(trained.course, trained.pace, trained.jobs)),
+    }
+
+
+def _head(trained: Trained) -> str:
+    settings, course = trained.begun.settings, trained.course
+    trains = training_of(trained.scenario).arbiter
+    best, count = course.best, len(course.generations)
+    lived = f"{counted(best.episodes, 'episode')}, {counted(best.decisions, 'decision')}"
+    lines = [f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"]
+    lines.append(
+        wrapped(
+            f"from {lived}; the best of {counted(count, 'generation')}, each of which was tried "
+            f"in the same {counted(settings.tried_in, 'world')}{_ending(trained)}"
+        )
+    )
+    return "\n".join(lines)
+
+
+def _ending(trained: Trained) -> str:
+    settings, course = trained.begun.settings, trained.course
+    if course.episodes >= settings.episodes:
+        return ""
+    lived = f"{course.episodes:,} of {counted(settings.episodes, 'episode')}"
+    after = counted(settings.patience, "generation")
+    return f"; it stopped early, after {lived}, since {after} in a row were no better"
+
+
+def _judged_text(trained: Trained) -> str:
+    if not trained.judged:
+        return ""
+    rows = [COLUMNS, *(_row(each) for each in trained.judged)]
+    said = [*_compaction(trained), *_failures(trained)]
+    worlds = counted(trained.begun.held_out, "world")
+    title = f"in {worlds} held out: nothing was learnt or chosen in them"
+    return section(title, [table(rows, INDENT), bullets(said)])
+
+
+def _row(one: Judged) -> tuple[str, ...]:
+    success = f"{one.trial.success:.0%} ({100 * one.low:.0f} to {one.high:.0%})".replace("%", " %")
+    rules = "" if one.rules is None else f"{one.rules:,}"
+    return one.what, rules, success, f"{one.trial.reward:.4g}", f"{one.trial.seconds:.1f}"
+
+
+def _compaction(trained: Trained) -> list[str]:
+    """What it costs that the rules are few."""
+    few, votes = trained.judged[0], trained.judged[1]
+    cost = votes.trial.reward - few.trial.reward
+    became = f"compaction made {few.rules} of {counted(votes.rules or 0, 'rule')}"
+    if abs(cost) <= SAME * abs(votes.trial.reward):
+        return [f"{became}, which costs no reward"]
+    if cost > 0.0:
+        return [f"{became}, which costs {number(cost)} of the reward of an episode"]
+    return [f"{became}, which costs nothing: the few get {number(-cost)} more in an episode"]
+
+
+def _failures(trained: Trained) -> list[str]:
+    """Seeds by which failures can be looked at."""
+    failed = trained.judged[0].failed
+    if not failed:
+        return []
+    seeds = ", ".join(str(seed) for seed in failed[:FEW])
+    more = f" and {len(failed) - FEW} more" if len(failed) > FEW else ""
+    return [f"what was learnt fails with the seeds {seeds}{more} (specc simulate --seed)"]
+
+
+def _compaction_record(trained: Trained) -> dict[str, Any]:
+    found = trained.found
+    record: dict[str, Any] = {
+        "rules_before": len(found.votes.table),
+        "rules": len(found.rules),
+        "loses_by_decision": found.loses,
+        "at_stake_by_decision": found.at_stake,
+    }
+    if trained.judged:
+        few, votes = trained.judged[0].trial, trained.judged[1].trial
+        record["reward_lost"] = votes.reward - few.reward
+    return record
+
+
+def _speed_text(trained: Trained) -> str:
+    shares = shares_of(trained.course, trained.pace, trained.jobs)
+    return section("what it took", [table(_speed_rows(shares), INDENT)])
+
+
+def _speed_rows(shares: Shares) -> list[tuple[str, str]]:
+    processes = "one process" if shares.jobs == 1 else f"{shares.jobs} processes"
+    parts = (
+        ("the world", shares.world),
+        ("control", shares.control),
+        ("beginning and rewards", shares.rewards),
+        ("learning", shares.learning),
+    )
+    speed = (
+        f"{shares.per_second:,.0f} decisions a second; of a run of the world alone, under the same "
+        f"commands, {shares.per_second_bare:,.0f} on one process"
+    )
+    return [
+        ("time", f"{shares.seconds:,.1f} s on {processes}"),
+        ("speed", speed),
+        ("shares", ", ".join(f"{what} {100 * share:.0f} %" for what, share in parts)),
+    ]

@@ -1,0 +1,75 @@
+"""All files that a training leaves in its folder, once it is over."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from specc.figures.palettes import PALETTES
+from specc.figures.style import Picture, rendered
+from specc.figures.style_names import Style
+from specc.figures.training import Improving, draw_training
+from specc.files import json_bytes, write_atomically, write_over
+from specc.texts.amounts import counted
+from specc.texts.training import training_record, training_text
+from specc.training.episode import training_of
+from specc.training.folder import CURVES, RECORD, SUMMARY, arbiter_name
+from specc.training.judging import interval
+from specc.training.result import Trained
+
+
+def write_all(
+    trained: Trained, folder: Path, style: Style, tell: Callable[[str, int, int], None]
+) -> list[str]:
+    """Write the arbiter with its rules, the summary and the curves; their names in the folder.
+
+    Raises:
+        SpecError: one can't be written (V347).
+    """
+    names: list[str] = []
+    for name, content in _files(trained, style):
+        tell(f"writing {name}", len(names), 4)
+        write_atomically(folder / name, content)
+        names.append(name)
+    return names
+
+
+def write_in_place(trained: Trained) -> Path:
+    """Replace the arbiter's own text by that with its rules; its path.
+
+    Raises:
+        SpecError: it was changed in the meantime (V374), or can't be written (V347).
+    """
+    path = Path(trained.source.name)
+    write_over(path, trained.source.text, trained.edited.text, "its arbiter was trained")
+    return path
+
+
+def _files(trained: Trained, style: Style) -> Iterator[tuple[str, bytes]]:
+    yield arbiter_name(trained.scenario), trained.edited.text.encode()
+    yield SUMMARY, f"{training_text(trained)}\n".encode()
+    yield RECORD, json_bytes(training_record(trained))
+    yield CURVES, rendered(_curves(trained, style), "svg", PALETTES[style])
+
+
+def _curves(trained: Trained, style: Style) -> Picture:
+    """How the policies improved."""
+    course, settings = trained.course, trained.begun.settings
+    every = course.generations
+    low, high = np.transpose([interval(each.tried.success, settings.tried_in) for each in every])
+    improving = Improving(
+        episodes=np.array([each.episodes for each in every]),
+        explored=np.array([each.explored.reward for each in every]),
+        tried=np.array([each.tried.reward for each in every]),
+        explored_success=np.array([each.explored.success for each in every]),
+        tried_success=np.array([each.tried.success for each in every]),
+        low=low,
+        high=high,
+        best=every.index(course.best),
+        worlds=settings.tried_in,
+    )
+    about = (
+        f"{settings.learner} learns how {training_of(trained.scenario).arbiter} decides, anew "
+        f"after each {counted(settings.each, 'episode')}, at first from choices at random."
+    )
+    return draw_training(improving, trained.scenario.name, about=[about], style=style)
