@@ -27,7 +27,7 @@ MOST: Final = 64
 """Rules that are drawn; of more, those that decide most."""
 
 COLUMN: Final = 1.05
-"""The width of an input's column, in inches; of more than ten, a part of it."""
+"""The width of an input's column, in inches; of more than ten a part of it, if bounds have room."""
 
 ROW: Final = 0.19
 HEAD: Final = 0.36
@@ -120,6 +120,7 @@ class _Sheet:
 def _sheet(table: RuleTable, names: Names, said: list[Sentence], palette: Palette) -> _Sheet:
     asked = _asked(table, [each.rule for each in said])
     column = max(0.62, min(COLUMN, 10.0 * COLUMN / max(len(asked), 1)))
+    column = max([column, *(_room_for(table, names, each.rule, i) for each in said for i in asked)])
     says = max(SAYS, *(0.45 + text_width(each.then, 8.0) for each in said))
     return _Sheet(table, names, said, asked, palette, column, says)
 
@@ -191,7 +192,7 @@ def _draw_rule(axes: Axes, sheet: _Sheet, said: Sentence, top: float) -> None:
     is_for = table.prediction[rule] == table.prediction.max()
     color = palette.nullcline if is_for else palette.cycle
     for k, i in enumerate(sheet.asked):
-        if table.lower[rule, i] > table.low[i] or table.upper[rule, i] < table.high[i]:
+        if _is_asked(table, rule, i):
             _draw_bar(axes, sheet, (rule, i), (k * sheet.column + INDENT, top), color)
     middle = top + 0.5 * ROW
     axes.plot(sheet.bars + 0.17, middle, "o" if is_for else "x", color=color, markersize=4.5)
@@ -202,40 +203,64 @@ def _draw_rule(axes: Axes, sheet: _Sheet, said: Sentence, top: float) -> None:
     axes.text(sheet.bars + sheet.says, middle, counted if cases else "never tried", **look)
 
 
+def _room_for(table: RuleTable, names: Names, rule: int, i: int) -> float:
+    """The least width of a column in which the bounds of a bar have room beside or in the bar."""
+    if not _is_asked(table, rule, i):
+        return 0.0
+    begin, end = _span(table, names, rule, i)
+    wide = _text_room(_bounds(table, names, rule, i))
+    shares = (BAR * begin, 1.0 - BAR * end - INDENT / COLUMN, BAR * (end - begin))
+    return wide / max(shares)
+
+
+def _is_asked(table: RuleTable, rule: int, i: int) -> bool:
+    return bool(table.lower[rule, i] > table.low[i] or table.upper[rule, i] < table.high[i])
+
+
+def _span(table: RuleTable, names: Names, rule: int, i: int) -> tuple[float, float]:
+    """Where a bar begins and ends, as shares of the input's range."""
+    low, high = float(table.low[i]), float(table.high[i])
+    lower, upper = float(table.lower[rule, i]), float(table.upper[rule, i])
+    if names.inputs[i].values:  # each value has an equal part of the line
+        lower, upper = np.ceil(lower), np.ceil(upper) if upper < high else high + 1.0
+        high += 1.0
+    return (lower - low) / (high - low), (upper - low) / (high - low)
+
+
+def _text_room(text: str) -> float:
+    return text_width(text, TINY) + 0.06
+
+
 def _draw_bar(
     axes: Axes, sheet: _Sheet, of: tuple[int, int], corner: tuple[float, float], color: str
 ) -> None:
     """What a rule asks of an input: a bar on a line that is its range, and its bounds."""
-    table, (rule, i), (left, top) = sheet.table, of, corner
+    (rule, i), (left, top) = of, corner
     room = BAR * sheet.column
-    low, high = float(table.low[i]), float(table.high[i])
-    lower, upper = float(table.lower[rule, i]), float(table.upper[rule, i])
-    if sheet.names.inputs[i].values:  # each value has an equal part of the line
-        lower, upper = np.ceil(lower), np.ceil(upper) if upper < high else high + 1.0
-        high += 1.0
-    begin, end = (left + room * (at - low) / (high - low) for at in (lower, upper))
+    begin, end = (left + room * at for at in _span(sheet.table, sheet.names, rule, i))
     middle = top + 0.5 * ROW
     axes.plot([left, left + room], [middle] * 2, color=sheet.palette.slow, linewidth=1.0, zorder=1)
     size = max(end - begin, 0.012)
     axes.add_patch(
         Rectangle((begin, top + 0.2 * ROW), size, 0.6 * ROW, color=color, lw=0, zorder=2)
     )
-    text = _bounds(sheet, rule, i)
-    wide = text_width(text, TINY) + 0.06
+    text = _bounds(sheet.table, sheet.names, rule, i)
+    wide = _text_room(text)
     paper = sheet.palette.paper
     look: Look = {"fontsize": TINY, "va": "center_baseline", "ha": "center", "zorder": 3}
-    if max(begin - left, left + room - end) >= wide:
-        is_left = begin - left > left + room - end
+    beside = left + sheet.column - INDENT - end  # up to the next column
+    if max(begin - left, beside) >= wide or size < wide:
+        is_left = begin - left >= beside
         at = begin - wide / 2.0 if is_left else end + wide / 2.0
         box = {"facecolor": paper, "edgecolor": "none", "pad": 0.6}
         axes.text(at, middle, text, color=sheet.palette.ink, bbox=box, **look)
-    elif size >= wide:
+    else:
         axes.text((begin + end) / 2.0, middle, text, color=paper, **look)
 
 
-def _bounds(sheet: _Sheet, rule: int, i: int) -> str:
+def _bounds(table: RuleTable, names: Names, rule: int, i: int) -> str:
     """The bounds of a bar as text: `< 0.5`, `≥ 0.25`, `0.25 to 0.5`; or the values."""
-    table, each = sheet.table, sheet.names.inputs[i]
+    each = names.inputs[i]
     lower, upper = float(table.lower[rule, i]), float(table.upper[rule, i])
     if each.values:
         return " or ".join(allowed_values(each, lower, upper, float(table.high[i])))

@@ -2,10 +2,14 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Rectangle
 
 from lcs.inputs import Input
 from lcs.rules.names import plain_names
+from lcs.rules.table import RuleTable
 from specc.figures.quantities import range_shown
 from specc.figures.rules_plane import Slice, draw_rules, slice_through
 from specc.figures.rules_sheet import BAR, INDENT, MOST, draw_rule_sheet
@@ -112,3 +116,31 @@ def test_equal_rules_give_equal_bytes() -> None:
 def test_ends_of_ranges_are_round() -> None:
     assert range_shown(6e-6, 0.99998) == (0.0, 1.0)
     assert range_shown(-np.inf, 2.0) == (-np.inf, 2.0)
+
+
+@settings(max_examples=3, deadline=None)
+@given(st.integers(0, 2**32), st.integers(1, 8))
+def test_each_bar_has_its_bounds_beside_or_in_it_and_within_its_column(
+    seed: int, inputs: int
+) -> None:
+    chance = np.random.default_rng(seed)
+    ends = np.sort(chance.random((12, inputs, 2)), axis=2).round(3)
+    lower, upper = np.maximum(ends[..., 0], 0.001), np.minimum(ends[..., 1] + 0.002, 0.999)
+    count = np.full(12, 3)
+    table = RuleTable(
+        2, np.repeat([0, 1], 6), lower, upper, np.ones(12), np.ones(12), count, count,
+        np.zeros(inputs), np.ones(inputs),
+    )  # fmt: skip
+    figure = draw_rule_sheet(table, plain_names(table), "rules")
+    FigureCanvasAgg(figure).draw()  # type: ignore[no-untyped-call]  # matplotlib's own
+    [axes] = figure.axes
+    bounds = [text for text in axes.texts if " to " in text.get_text()]
+    boxes = [text.get_window_extent() for text in bounds]
+    then = next(text for text in axes.texts if text.get_text() == "then")
+    width = (then.get_position()[0] - 0.1) / inputs
+
+    assert len(bounds) == 12 * inputs
+    left = axes.get_window_extent().x0
+    for box in boxes:
+        first, last = ((end - left) / figure.dpi / width for end in (box.x0, box.x1))
+        assert int(first + 0.05) == int(last - 0.05)
