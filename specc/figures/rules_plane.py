@@ -194,7 +194,7 @@ def _draw_decided(
         ground = Patch(facecolor=color, hatch=hatch, edgecolor=palette.faint, linewidth=0.5)
         entries.append(Entry(f"decided: {label}", (ground,)))
     if examples is not None and len(plane.at) == 2:
-        entries += _draw_examples(axes, plane, examples, palette)
+        entries += _draw_examples(axes, plane, examples, names, palette)
     return entries
 
 
@@ -207,16 +207,20 @@ def _ground(action: int, palette: Palette) -> tuple[str, str]:
 
 
 def _draw_examples(
-    axes: Axes, plane: Slice, examples: tuple[Array, Integers], palette: Palette
+    axes: Axes, plane: Slice, examples: tuple[Array, Integers], names: Names, palette: Palette
 ) -> list[Entry]:
-    """Examples as marks, one for each action."""
+    """Examples as marks, one for each action; entries of the legend."""
+    entries = []
     some = np.linspace(0, len(examples[0]) - 1, min(len(examples[0]), DOTS)).astype(np.int64)
     inputs, actions = examples[0][some], examples[1][some]
     for action in np.unique(actions):
         x = inputs[actions == action]
         mark = MARKS[int(action) % len(MARKS)]
-        axes.plot(x[:, plane.x], x[:, plane.y], mark, color=palette.ink, markersize=1.8, alpha=0.5)
-    return [line_entry("example", marker="o", ls="none", color=palette.ink, markersize=2.5)]
+        dots: Look = {"marker": mark, "ls": "none", "color": palette.ink}
+        axes.plot(x[:, plane.x], x[:, plane.y], **dots, markersize=2.2, alpha=0.5)
+        label = f"example of {names.actions[int(action)]}"
+        entries.append(line_entry(label, **dots, markersize=4.0, alpha=0.7))
+    return entries
 
 
 def _draw_boxes(
