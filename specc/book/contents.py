@@ -1,7 +1,7 @@
 """All that a book is made of, gathered once: what was compiled, and what was found out of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, TypeAlias, final
 
@@ -16,7 +16,8 @@ from specc.book.origins import renamed
 from specc.book.settings import DEFAULT, settings_of
 from specc.book.sources import Sources, sources_of
 from specc.book.tables import Sheet, sheets_of
-from specc.book.views import View, views_of
+from specc.book.trials import NO_TRIAL, Trial, trial_of
+from specc.book.views import View, views_at
 from specc.faults import fault
 from specc.scenarios.simulating import Simulation, simulate_scenario
 from verifier.report.requirement_results import RequirementResult
@@ -35,6 +36,7 @@ class Shown:
     settings: tuple[Setting, ...] = ()
     portraits: tuple[View, ...] = ()
     sheets: tuple[Sheet, ...] = ()
+    trial: Trial = NO_TRIAL
 
 
 @final
@@ -154,7 +156,8 @@ def drawn(
     nodes = []
     for done, node in enumerate(architecture.nodes):
         progress(f"looking at {node.name}", done, len(architecture.nodes))
-        nodes.append(_shown(architecture, node))
+        trial = trial_of(architecture, node)
+        nodes.append(replace(_shown(architecture, node), trial=trial))
     return Drawn(architecture, body, notes, robots, tuple(nodes))
 
 
@@ -165,15 +168,15 @@ def _shown(architecture: Architecture, node: Node) -> Shown:
     if plan is None:
         return Shown(node)
     held = {control.name: control.default for control in plan.controls}
-    return Shown(node, portraits=views_of(plan, Setting(DEFAULT, (), held)))
+    return Shown(node, portraits=views_at(plan, (Setting(DEFAULT, (), held),)))
 
 
 def _behavior(architecture: Architecture, node: Node) -> Shown:
     program = architecture.programs[node.behavior]
     settings, wired = settings_of(architecture, node)
-    sheets: list[Sheet] = []
-    views: list[View] = []
-    for setting in settings:
-        sheets += sheets_of(program, setting.name, setting.controls, wired)
-        views += views_of(program, setting)
-    return Shown(node, settings, tuple(views), tuple(sheets))
+    sheets = tuple(
+        sheet
+        for setting in settings
+        for sheet in sheets_of(program, setting.name, setting.controls, wired)
+    )
+    return Shown(node, settings, views_at(program, settings), sheets)

@@ -67,6 +67,7 @@ def _module(made: Architecture, shown: Shown, names: Names) -> Module:
         agreement=agreement.share if agreement is not None else None,
         feasibility=feasible.level if feasible else "",
         evidence=feasible.evidence if feasible else "",
+        trial=shown.trial,
     )
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final, final
 
 from runtime.document import Document
+from specc.book.trials import Trial
 
 ARTIFACTS: Final = {"architecture": "architecture.specc", "scenario": "scenario.specc"}
 """The compiled program in a book of each kind."""
@@ -138,6 +139,7 @@ class Module:
     kind: behavior, arbiter or module (a program of the author's own). spec: its file in the book,
     empty of a module. page: its HTML. level: 0 of base behaviors. period, response_time: seconds.
     agreement: of an arbiter the share of decisions that must agree, None where none is declared.
+    trial: how to test it.
     """
 
     node: str
@@ -164,6 +166,7 @@ class Module:
     agreement: float | None
     feasibility: str
     evidence: str
+    trial: Trial
 
 
 @final

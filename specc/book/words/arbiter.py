@@ -23,6 +23,7 @@ from specc.book.words.acting import timing_sentences
 from specc.book.words.behavior import HOW_TO_READ, PORTRAIT, mode_ways
 from specc.book.words.quantities import NOTHING, exact, listed, milliseconds, range_of
 from specc.book.words.source import author_words, spec_section
+from specc.book.words.testing import bench_section
 from specc.book.words.topology import topology_blocks
 from specc.book.words.wiring import governors, link, source_of
 from specc.figures.quantities import percent
@@ -41,6 +42,7 @@ def arbiter_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
         Section("What each choice does", tuple(_choices(made, node, names))),
         _when(made, node, names),
         _faithful(arbiter),
+        bench_section(shown),
         spec_section(arbiter.source),
         *([spec_section(arbiter.plan.source, "The spec of its plan")] if arbiter.plan else []),
     )

@@ -24,6 +24,7 @@ from specc.book.words.data import data_section
 from specc.book.words.faithful import faithful_section
 from specc.book.words.quantities import NOTHING, SECOND, exact, range_of, unit_of
 from specc.book.words.source import author_words, conditions_of, formulas_of, spec_section
+from specc.book.words.testing import procedure_section
 from specc.book.words.topology import topology_blocks
 from specc.book.words.wiring import source_of, value_of
 from specc.figures.quantities import rate_of
@@ -49,6 +50,7 @@ def behavior_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
         Section("Phase portraits", tuple(_portraits(program, shown, made, names))),
         acting_section(of, node, names),
         faithful_section(program),
+        procedure_section(shown),
         spec_section(program.source),
     )
     return Chapter(
