@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from lcs.arrays import Array
+from lcs.rules.deciding import boxes_hold
 from lcs.rules.digits import just_below, snapped
 from lcs.rules.table import RuleTable
 
@@ -30,7 +31,32 @@ def readable(table: RuleTable, inputs: Array | None = None) -> RuleTable:
                     bounds[r, i] = _short(bound, column, low, high)
     is_sliver = ~(lower < upper)
     lower[is_sliver], upper[is_sliver] = table.lower[is_sliver], table.upper[is_sliver]
+    if inputs is not None:
+        for i in range(lower.shape[1]):
+            _read_alike(lower, upper, i, table.high, inputs)
     return dataclasses.replace(table, lower=lower, upper=upper)
+
+
+def _read_alike(lower: Array, upper: Array, i: int, high: Array, inputs: Array) -> None:
+    """Where one rule says `>= 0.9` and another `> 0.9` of an input, let both say the same.
+
+    `>= 0.9` if that can be, else `> 0.9`; where an example would change sides, both stay.
+    """
+    present = {*lower[:, i].tolist(), *upper[:, i].tolist()}
+    for bound in sorted(present):
+        above = math.nextafter(bound, math.inf)
+        if above not in present or just_below(above) is None:
+            continue
+        for old, new in ((above, bound), (bound, above)):
+            moved_lower, moved_upper = lower.copy(), upper.copy()
+            moved_lower[lower[:, i] == old, i] = new
+            moved_upper[upper[:, i] == old, i] = new
+            changed = (moved_lower != lower).any(axis=1) | (moved_upper != upper).any(axis=1)
+            before = boxes_hold(lower[changed], upper[changed], high, inputs)
+            after = boxes_hold(moved_lower[changed], moved_upper[changed], high, inputs)
+            if np.array_equal(before, after) and (moved_lower < moved_upper)[changed].all():
+                lower[:], upper[:] = moved_lower, moved_upper
+                break
 
 
 def _short(bound: float, column: Array | None, low: float, high: float) -> float:

@@ -186,3 +186,24 @@ def test_a_bound_right_above_a_short_number_is_known_as_such() -> None:
     assert just_below(float(np.nextafter(0.9, 1.0))) == 0.9
     assert just_below(0.9) is None
     assert just_below(1.0 / 3.0) is None
+
+
+def test_bounds_at_one_number_read_alike_where_no_example_changes_sides() -> None:
+    above = float(np.nextafter(0.9, 1.0))
+    lower = np.array([[0.9, 0.0], [above, 0.0], [0.0, 0.0]])
+    upper = np.array([[2.0, 0.5], [2.0, 2.0], [above, 2.0]])
+    count = np.full(3, 2)
+    table = RuleTable(
+        2, np.array([0, 0, 1]), lower, upper, np.ones(3), np.ones(3), count, count,
+        np.zeros(2), np.full(2, 2.0),
+    )  # fmt: skip
+
+    def said(*at_the_bound: float) -> list[str]:
+        x = np.array([[0.9, y] for y in at_the_bound] + [[0.899, 0.1], [0.901, 0.1], [0.901, 1.0]])
+        told = in_words(table, plain_names(table), x)
+        return sorted(each.when.partition(" and ")[0] for each in told)
+
+    # Of the examples at 0.9 the third rule holds one, so it needs "<= 0.9".
+    assert said(1.0) == ["when x1 <= 0.9", "when x1 > 0.9", "when x1 > 0.9"]
+    # Here the first rule holds it as well, and none can move.
+    assert said(0.1) == ["when x1 <= 0.9", "when x1 > 0.9", "when x1 >= 0.9"]
