@@ -141,6 +141,10 @@ class ALCSR:
         self._run(self._waits_with[None], owed, cycle.OWED)
         self._waits_with = None
 
+    def give_up(self) -> None:
+        """No reward will come for the last action, because what it was part of has ended."""
+        self._has_acted, self._waits_with = False, None
+
     def run(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> Course:
         """A cycle for each input (T, n), where action a would be given rewards (T, A).
 

@@ -114,6 +114,10 @@ class XCSR:
             cycle.learn(*self._parts(), given, after, self.chance)
         self._has_acted = self._is_trying = False
 
+    def give_up(self) -> None:
+        """No reward will come for the last action, because what it was part of has ended."""
+        self._has_acted = self._is_trying = False
+
     def run(self, inputs: npt.ArrayLike, rewards: npt.ArrayLike) -> Course:
         """A cycle for each input (T, n), where action a would be given rewards (T, A).
 

@@ -15,6 +15,11 @@ import numpy as np
 import pytest
 
 from compiler.world.scenario import compile_scenario
+from lcs.alcsr.config import GROWN
+from lcs.alcsr.learner import ALCSR
+from lcs.arbiter import LearningArbiter
+from lcs.xcsr.learner import XCSR
+from runtime.arbitration.protocol import Arbiter
 from runtime.run import Run, run
 from runtime.scenario import Scenario
 from runtime.scheduler.environment import Delivery
@@ -127,6 +132,32 @@ def test_it_learns_to_stay_at_the_lamp(seed: int) -> None:
     choices = made.signals["r.learn.choice"].values
     behind = made.signals["r.learn.behind"].values
     assert np.mean(choices[100:] == behind[100:]) > 0.8
+
+
+def test_alcsr_learns_which_behavior_leads_to_the_lamp() -> None:
+    learner = ALCSR(2, 1, dataclasses.replace(GROWN, explore=0.8), low=-4.0, high=4.0, seed=1)
+    brightness = Brightness()
+    arbiter: Arbiter = LearningArbiter(learner, 2)
+    rewarded = Learner(arbiter, lambda: 1000.0 * (brightness.reward() > 0.0))
+
+    for seed in range(3):
+        scenario = dataclasses.replace(task(), seed=seed)
+        run(scenario, learners={"r.learn": rewarded}, observer=brightness)
+
+    bearings = [[0.5], [1.2], [2.0], [2.6]]  # the lamp hangs half a metre to the left of its way
+    assert learner.decide(bearings)[0].tolist() == [0, 0, 1, 1]
+
+
+def test_xcsr_stands_in_the_same_place() -> None:
+    learner = XCSR(2, 1, low=-4.0, high=4.0, seed=1)
+    arbiter: Arbiter = LearningArbiter(learner, 2)
+    scenario = dataclasses.replace(task(), duration=10.0)
+
+    for _ in range(2):  # the second run begins while the last reward of the first is owed
+        made = run(scenario, learners={"r.learn": Learner(arbiter, lambda: 1000.0)})
+
+    assert set(made.signals["r.learn.choice"].values.tolist()) <= {-1.0, 0.0, 1.0}
+    assert len(learner.rules()) > 0
 
 
 def test_by_chance_alone_it_strays() -> None:
