@@ -92,6 +92,7 @@ study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.classifier
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.scitos
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.steps
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs.twenty --until 20000
 
 bench: .venv/ready ## table lookup, the decoding of logs and learning beside their peers, in one run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
