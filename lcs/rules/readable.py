@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from lcs.arrays import Array
+from lcs.arrays import Array, Booleans
 from lcs.rules.deciding import boxes_hold
 from lcs.rules.digits import just_below, snapped
 from lcs.rules.table import RuleTable
@@ -38,25 +38,33 @@ def readable(table: RuleTable, inputs: Array | None = None) -> RuleTable:
 
 
 def _read_alike(lower: Array, upper: Array, i: int, high: Array, inputs: Array) -> None:
-    """Where one rule says `>= 0.9` and another `> 0.9` of an input, let both say the same.
+    """Where one rule says `>= 0.9` and another `> 0.9` of an input, let them say the same.
 
-    `>= 0.9` if that can be, else `> 0.9`; where an example would change sides, both stay.
+    All `>= 0.9` if that can be, else `> 0.9` as far as can be: no example changes sides.
     """
     present = {*lower[:, i].tolist(), *upper[:, i].tolist()}
     for bound in sorted(present):
         above = math.nextafter(bound, math.inf)
         if above not in present or just_below(above) is None:
             continue
-        for old, new in ((above, bound), (bound, above)):
-            moved_lower, moved_upper = lower.copy(), upper.copy()
-            moved_lower[lower[:, i] == old, i] = new
-            moved_upper[upper[:, i] == old, i] = new
-            changed = (moved_lower != lower).any(axis=1) | (moved_upper != upper).any(axis=1)
-            before = boxes_hold(lower[changed], upper[changed], high, inputs)
-            after = boxes_hold(moved_lower[changed], moved_upper[changed], high, inputs)
-            if np.array_equal(before, after) and (moved_lower < moved_upper)[changed].all():
-                lower[:], upper[:] = moved_lower, moved_upper
-                break
+        moved, is_same = _moved(lower, upper, i, (above, bound), high, inputs)
+        if not is_same.all():
+            moved, is_same = _moved(lower, upper, i, (bound, above), high, inputs)
+        lower[is_same], upper[is_same] = moved[0][is_same], moved[1][is_same]
+
+
+def _moved(
+    lower: Array, upper: Array, i: int, ends: tuple[float, float], high: Array, inputs: Array
+) -> tuple[tuple[Array, Array], Booleans]:
+    """Bounds of an input from one number to another, and which rules hold what they held (R,)."""
+    old, new = ends
+    moved_lower, moved_upper = lower.copy(), upper.copy()
+    moved_lower[lower[:, i] == old, i] = new
+    moved_upper[upper[:, i] == old, i] = new
+    before = boxes_hold(lower, upper, high, inputs)
+    after = boxes_hold(moved_lower, moved_upper, high, inputs)
+    is_same = (before == after).all(axis=1) & (moved_lower < moved_upper).all(axis=1)
+    return (moved_lower, moved_upper), np.asarray(is_same)
 
 
 def _short(bound: float, column: Array | None, low: float, high: float) -> float:
