@@ -17,7 +17,7 @@ from specc.book.settings import DEFAULT, settings_of
 from specc.book.sources import Sources, sources_of
 from specc.book.tables import Sheet, sheets_of
 from specc.book.trials import NO_TRIAL, Trial, trial_of
-from specc.book.views import View, views_at
+from specc.book.views import Decisions, View, decisions_at, views_at
 from specc.faults import fault
 from specc.scenarios.simulating import Simulation, simulate_scenario
 from verifier.report.requirement_results import RequirementResult
@@ -35,6 +35,7 @@ class Shown:
     node: Node
     settings: tuple[Setting, ...] = ()
     portraits: tuple[View, ...] = ()
+    decisions: tuple[Decisions, ...] = ()
     sheets: tuple[Sheet, ...] = ()
     trial: Trial = NO_TRIAL
 
@@ -164,9 +165,13 @@ def drawn(
 def _shown(architecture: Architecture, node: Node) -> Shown:
     if node.behavior >= 0:
         return _behavior(architecture, node)
-    plan = architecture.arbiters[node.arbiter].plan if node.arbiter >= 0 else None
-    if plan is None:
+    if node.arbiter < 0:
         return Shown(node)
+    arbiter = architecture.arbiters[node.arbiter]
+    plan = arbiter.plan
+    if plan is None:
+        settings, _ = settings_of(architecture, node)
+        return Shown(node, settings, decisions=decisions_at(arbiter, settings))
     held = {control.name: control.default for control in plan.controls}
     return Shown(node, portraits=views_at(plan, (Setting(DEFAULT, (), held),)))
 
@@ -179,4 +184,4 @@ def _behavior(architecture: Architecture, node: Node) -> Shown:
         for setting in settings
         for sheet in sheets_of(program, setting.name, setting.controls, wired)
     )
-    return Shown(node, settings, views_at(program, settings), sheets)
+    return Shown(node, settings, views_at(program, settings), sheets=sheets)

@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 from specc.book.contents import Contents, Progress
 from specc.book.naming import RUN, Names
+from specc.figures.decisions import draw_decisions
 from specc.figures.palettes import PALETTES
 from specc.figures.portrait import draw_portrait
 from specc.figures.style import Picture, rendered
@@ -39,3 +40,6 @@ def _drawings(contents: Contents, names: Names) -> Iterator[tuple[str, Draw]]:
             for k, view in enumerate(shown.portraits):
                 name = names.portrait(of.architecture, shown.node, k)
                 yield name, partial(draw_portrait, view.portrait)
+            for k, decisions in enumerate(shown.decisions):
+                name = names.portrait(of.architecture, shown.node, k)
+                yield name, partial(draw_decisions, decisions.portrait)

@@ -46,7 +46,7 @@ class Names:
 
     def figures(self, made: Architecture, shown: Shown) -> tuple[str, ...]:
         """The figures of a node, as files."""
-        count = range(len(shown.portraits))
+        count = range(len(shown.portraits) + len(shown.decisions))
         return tuple(f"figures/{self.portrait(made, shown.node, k)}.svg" for k in count)
 
 

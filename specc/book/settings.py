@@ -1,4 +1,4 @@
-"""At which values of its controls a behavior is shown: as the architecture sets them."""
+"""At which values of its controls a module is shown: as the architecture sets them."""
 
 from runtime.architecture import Architecture, Node
 from runtime.program import Control
@@ -11,12 +11,13 @@ DEFAULT = "default"
 def settings_of(
     architecture: Architecture, node: Node
 ) -> tuple[tuple[Setting, ...], frozenset[str]]:
-    """The settings of a behavior's controls, and the controls that a signal moves.
+    """The settings of a module's controls, and the controls that a signal moves.
 
     The first is what holds while no choice sets anything; each other one is what choices set.
     """
-    program = architecture.programs[node.behavior]
-    controls = {control.name: control for control in program.controls}
+    behaviors, arbiters = architecture.programs, architecture.arbiters
+    spec = behaviors[node.behavior] if node.behavior >= 0 else arbiters[node.arbiter]
+    controls = {control.name: control for control in spec.controls}
     own = {name: control.default for name, control in controls.items()}
     own |= {w.entry: w.value for w in node.inputs if w.signal < 0 and w.entry in controls}
     moving = frozenset(w.entry for w in node.inputs if w.signal >= 0 and w.entry in controls)

@@ -1,15 +1,18 @@
 """The phase portraits of a behavior that a book shows: at each setting, of each mode."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final
 
+from runtime.arbiter import Arbiter
 from runtime.program import Kind, Program
 from specc.book.formulas import in_mode, reads
 from specc.book.manifest import Setting
 from specc.figures.quantities import quantity
 from specc.given import Value
 from specc.portraying import portrait
+from specc.portraying_arbiters import ArbiterPortrait, arbiter_portrait
+from verifier.deciding.rulings import DRAWN
 from verifier.topology.features import Portrait
 
 WIDE = 2
@@ -25,15 +28,54 @@ class View:
     portrait: Portrait
 
 
-def views_of(program: Program, setting: Setting) -> tuple[View, ...]:
-    """The portraits of a behavior at one setting of its controls, one for each mode."""
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Decisions:
+    """What an arbiter decides where. title: at which values of its controls."""
+
+    title: str
+    portrait: ArbiterPortrait
+
+
+def views_at(program: Program, settings: Sequence[Setting]) -> tuple[View, ...]:
+    """The portraits of a behavior: at each setting of the controls that its field reads."""
+    reading = field_reads(program)
+    told = [{n: v for n, v in one.controls.items() if n in reading} for one in settings]
+    distinct = [values for k, values in enumerate(told) if values not in told[:k]]
+    return tuple(view for values in distinct for view in views_of(program, values))
+
+
+def decisions_at(arbiter: Arbiter, settings: Sequence[Setting]) -> tuple[Decisions, ...]:
+    """What an arbiter decides where, at each setting of its controls; none of what remembers."""
+    if arbiter.paradigm not in DRAWN:
+        return ()
+    units = {control.name: control.unit for control in arbiter.controls}
+    told = [one.controls for one in settings]
+    found = []
+    for controls in (values for k, values in enumerate(told) if values not in told[:k]):
+        at = ", ".join(f"{name} = {quantity(v, units[name], 6)}" for name, v in controls.items())
+        given: dict[str, Value] = {name: v / units[name].scale for name, v in controls.items()}
+        found.append(Decisions(at, arbiter_portrait(arbiter, None, given)))
+    return tuple(found)
+
+
+def field_reads(program: Program) -> set[str]:
+    """The names that the rates, closures and switches of a field depend on."""
+    field = program.field
+    codes = [*(field.formula or ()), *(term.coefficient for term in field.terms)]
+    codes += [each.code for each in field.coordinates]
+    codes += [guard.condition for guard in field.guards]
+    codes += [code for guard in field.guards for _, code in guard.resets]
+    codes += [state.closure for state in program.states if state.closure is not None]
+    axes = {axis.name for table in field.tables for axis in table.axes}
+    return axes | {name for code in codes for name in reads(in_mode(code, "", 0))}
+
+
+def views_of(program: Program, controls: Mapping[str, float]) -> tuple[View, ...]:
+    """The portraits at values (SI) of controls, one for each mode."""
     units = {control.name: control.unit for control in program.controls}
-    given: dict[str, Value] = {
-        name: value / units[name].scale for name, value in setting.controls.items()
-    }
-    at = ", ".join(
-        f"{name} = {quantity(value, units[name], 6)}" for name, value in setting.controls.items()
-    )
+    given: dict[str, Value] = {name: v / units[name].scale for name, v in controls.items()}
+    at = ", ".join(f"{name} = {quantity(v, units[name], 6)}" for name, v in controls.items())
     mode = program.field.mode
     values = next((s.values for s in program.states if s.name == mode), ())
     if not values:
@@ -56,7 +98,7 @@ def _alone(program: Program, given: dict[str, Value], at: str) -> Iterator[View]
         alone = portrait(program, driven, given)
         rest = [h for h in alone.held if h.name not in given]
         held = ", ".join(f"{h.name} = {h.label or quantity(h.value, h.unit, 6)}" for h in rest)
-        yield View(f"What it drives alone, with {held} held; {at}", alone)
+        yield View(f"What it drives alone, with {held} held" + (f"; {at}" if at else ""), alone)
 
 
 def _axes(program: Program, index: int) -> tuple[str, ...] | None:

@@ -27,6 +27,7 @@ from specc.book.words.testing import bench_section
 from specc.book.words.topology import topology_blocks
 from specc.book.words.wiring import governors, link, source_of
 from specc.figures.quantities import percent
+from specc.texts.arbiter_portraits import ruling_phrase
 from specc.texts.arbiters import rule_sentences, way_of
 from verifier.arbitration.judging import AGREED
 
@@ -134,6 +135,7 @@ def _decides(arbiter: Arbiter, shown: Shown, made: Architecture, names: Names) -
                 " condition holds no longer.",
                 is_small=True,
             )
+    yield from _decisions(arbiter, shown, made, names)
     labels = labels_of(arbiter)
     if arbiter.weights:
         pairs = zip(arbiter.choices, arbiter.weights, strict=True)
@@ -144,6 +146,21 @@ def _decides(arbiter: Arbiter, shown: Shown, made: Architecture, names: Names) -
         yield from _plan(arbiter.plan, shown, made, names)
     if arbiter.paradigm is Paradigm.MODULE:
         yield Paragraph(f"`{arbiter.module}` is Python of its author's: see the folder `specs/`.")
+
+
+def _decisions(arbiter: Arbiter, shown: Shown, made: Architecture, names: Names) -> Iterator[Block]:
+    """What it decides over the two readings that matter most, at each setting of its controls."""
+    for k, each in enumerate(shown.decisions):
+        plane = each.portrait.plane
+        over = " and ".join(f"`{axis.name}`" for axis in plane.axes)
+        yield Heading(f"Over {over}" + (f", where {each.title}" if each.title else ""))
+        alt = f"what {arbiter.name} decides over {over}"
+        yield Figure(names.portrait(made, shown.node, k), "", alt, PORTRAIT)
+        rows = tuple(
+            (ruling_phrase(arbiter, ruling), percent(plane.share_of(place)))
+            for place, ruling in enumerate(plane.rulings)
+        )
+        yield Table(("decides", "share of what is shown"), rows, (1,))
 
 
 def _sentence(text: str) -> str:
@@ -202,6 +219,7 @@ def _plan(plan: Program, shown: Shown, made: Architecture, names: Names) -> Iter
     if shown.portraits:
         yield Heading("Its phase space")
     for k, view in enumerate(shown.portraits):
+        yield Paragraph(f"Where {view.title}:")
         caption = HOW_TO_READ if k == 0 else ""
         alt = f"phase portrait of {plan.name}: {view.title}"
         yield Figure(names.portrait(made, shown.node, k), caption, alt, PORTRAIT)

@@ -1,11 +1,16 @@
 """The section that says which tables the book has of a behavior, and how they are read."""
 
+from typing import Final
+
 from specc.book.chapters import Block, Listing, Paragraph, Section, Table
 from specc.book.contents import Drawn, Shown
 from specc.book.naming import Names
 from specc.book.tables import PROBES, Sheet
 from specc.book.words.quantities import NOTHING, listed
 from specc.figures.quantities import number
+
+EXACT: Final = 1e-12
+"""Of the largest value: less is the rounding of numbers."""
 
 
 def data_section(of: Drawn, shown: Shown, names: Names) -> Section:
@@ -43,7 +48,7 @@ def _row(sheet: Sheet) -> tuple[str, ...]:
         listed((f"`{name}`" for name in sheet.axes), "constant"),
         nodes,
         unit,
-        f"{number(sheet.error, 2)}{share}",
+        f"{number(sheet.error, 2)}{share}" if sheet.error > EXACT * sheet.size else "rounding",
     )
 
 
