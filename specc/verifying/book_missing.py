@@ -1,25 +1,35 @@
 """What is still to be recorded of a module: its test procedure, without what was covered."""
 
-from runtime.arbiter import Arbiter
-from runtime.program import Program
-from spec_schema.diagnostics import SpecError
-from specc.verifying.book_modules import Piece
-from verifier.procedure.behavior import procedure_of
+from collections.abc import Mapping
+from typing import TypeAlias
+
+from specc.book.loading import LoadedBook
+from specc.book.trials import Trial
+from specc.verifying.book_modules import Place
+from verifier.procedure.bench_wording import how_sentence
 from verifier.procedure.remaining import remaining_runs
 from verifier.procedure.wording import runs_in_words
 from verifier.report.examination import Examination
 
+Trials: TypeAlias = Mapping[Place, Trial]
 
-def to_record(piece: Piece, found: Examination | None) -> tuple[str, ...]:
+
+def trials_of(book: LoadedBook) -> Trials:
+    """The test procedure of each module, as the book has it."""
+    return {
+        Place(architecture.name, module.node): module.trial
+        for architecture in book.book.architectures
+        for module in architecture.modules
+    }
+
+
+def to_record(trial: Trial, found: Examination | None) -> tuple[str, ...]:
     """Sentences; found: what was recorded shows, None where nothing of it was."""
-    if isinstance(piece.spec, Arbiter):
-        return () if found is None else found.report.advice
-    assert isinstance(piece.spec, Program), "code is not recorded"
-    try:
-        procedure = procedure_of(piece.spec, is_rehearsed=False)
-    except SpecError as error:
-        return (error.diagnostics[0].message,)
-    coverage = None if found is None else found.report.coverage
-    runs = remaining_runs(procedure, coverage)
     advice = () if found is None else found.report.advice
-    return (*runs_in_words(procedure, runs), *advice)
+    if trial.procedure is not None:
+        coverage = None if found is None else found.report.coverage
+        runs = remaining_runs(trial.procedure, coverage)
+        return (*advice, *runs_in_words(trial.procedure, runs))
+    if trial.bench is not None:
+        return (*advice, f"or on a bench, by its page: {how_sentence(trial.bench)}")
+    return (*advice, f"there is no test procedure: {trial.without}")

@@ -6,9 +6,10 @@ from dataclasses import replace
 from runtime.arbiter import Arbiter
 from runtime.program import Program
 from specc.book.loading import LoadedBook
+from specc.book.trials import Trial
 from specc.verifying.architecture import NotJudged
 from specc.verifying.book import OfModules, Outcome
-from specc.verifying.book_missing import to_record
+from specc.verifying.book_missing import to_record, trials_of
 from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Piece, Standing, pieces_of
 from specc.verifying.runs import Unusable
 from specc.verifying.trace import Verification
@@ -30,16 +31,17 @@ STANDINGS = {
 def book_verdict(book: LoadedBook, outcomes: Sequence[Outcome]) -> BookVerdict:
     """Every module of the book by all outcomes that are about it."""
     told = [each for each in outcomes if isinstance(each, OfModules)]
+    trials = trials_of(book)
     pieces = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
     return BookVerdict(
         name=book.book.name,
-        modules=tuple(_module(piece, told) for piece in pieces),
+        modules=tuple(_module(piece, trials[piece.place], told) for piece in pieces),
         unusable=tuple(each for each in outcomes if isinstance(each, Unusable)),
         notes=(),
     )
 
 
-def _module(piece: Piece, told: Sequence[OfModules]) -> ModuleVerdict:
+def _module(piece: Piece, trial: Trial, told: Sequence[OfModules]) -> ModuleVerdict:
     mine = [each.outcome for each in told if piece.place in each.places]
     members = tuple(each for each in mine if isinstance(each, Verification))
     lost = tuple(each for each in mine if isinstance(each, NotJudged))
@@ -47,13 +49,13 @@ def _module(piece: Piece, told: Sequence[OfModules]) -> ModuleVerdict:
         return ModuleVerdict(piece, Standing.FREE, (), lost, None, (NOTHING,), ())
     if not members:
         why = tuple(dict.fromkeys(each.why for each in lost)) or (NEVER,)
-        needed = to_record(piece, None)
+        needed = to_record(trial, None)
         return ModuleVerdict(piece, Standing.LACKS, (), lost, None, why, needed)
     together = _together(piece, members)
     failing = [each for each in members if each.report.verdict is Verdict.FAIL]
     standing = Standing.FAILS if failing else STANDINGS[together.report.verdict]
     why = _why(together, failing)
-    needed = to_record(piece, together) if standing is Standing.LACKS else ()
+    needed = to_record(trial, together) if standing is Standing.LACKS else ()
     return ModuleVerdict(piece, standing, members, lost, together, why, needed)
 
 
