@@ -27,6 +27,21 @@ def check_standing(
         _check_feasible(part, findings)
         _check_effect(part, read, commands[part.name], parts, findings)
         _note_defaults(part, parts, findings)
+        _note_learned(part, findings)
+
+
+def _note_learned(part: Part, findings: Findings) -> None:
+    """A note on how many rules an arbiter learned, and what it chooses where none of them holds."""
+    if part.arbiter is None or not part.arbiter.learner:
+        return
+    arbiter, count = part.arbiter, len(part.arbiter.rules) - 1
+    otherwise = arbiter.choices[arbiter.rules[-1].choice]
+    learner = arbiter.learner.upper()
+    if not count:
+        findings.note(f"{part.name} has learned no rules by {learner} yet: it chooses {otherwise}")
+        return
+    rules = f"{count} rule{'s' * (count > 1)} learned by {learner}"
+    findings.note(f"{part.name} decides by {rules}; where none holds it chooses {otherwise}")
 
 
 def _note_sensors(read: set[str], parts: Parts, findings: Findings) -> None:

@@ -73,8 +73,8 @@ def threshold_sentence(each: Threshold) -> str:
 
 
 def _is_bare(threshold: Threshold) -> bool:
-    """Whether it is a number that stands in a condition itself, as in learned rules."""
-    return threshold.name == threshold.comparison
+    """Whether it is a number in a condition, as in learned rules, and so has no name of its own."""
+    return " " in threshold.name
 
 
 def _to_write(threshold: Threshold) -> str:
