@@ -153,10 +153,11 @@ def _draw_area(
     fresh = ruling.choices[-1]
     outline = Path.make_compound_path(*(_closed(ring / scales) for ring in area.rings))
     ground: Look = {"facecolor": tint(palette, fresh), "edgecolor": palette.faint}
-    hatch = _hatch(palette, fresh)
+    hatch = "" if ruling.is_band else _hatch(palette, fresh)
     axes.add_patch(PathPatch(outline, **ground, hatch=hatch, linewidth=0.0, zorder=1))
     name = choice_name(found.arbiter, fresh)
-    entries = [Entry(name, (Patch(**ground, hatch=2 * hatch, linewidth=0.5),))]
+    sample = 2 * _hatch(palette, fresh)
+    entries = [Entry(name, (Patch(**ground, hatch=sample, linewidth=0.5),))]
     if ruling.is_band:
         stripes: Look = {"facecolor": "none", "edgecolor": palette.fast, "hatch": BAND}
         axes.add_patch(PathPatch(outline, **stripes, linewidth=0.0, zorder=1.5))
