@@ -61,12 +61,13 @@ def draw_training(
         _draw(successes, one, one.explored_success, one.tried_success, palette)
         entries = [
             line_entry(f"policy, in the same {one.worlds}\nworlds each time", **_tried(palette)),
-            line_entry("while exploring, in\nworlds of its own", **_explored(palette)),
+            line_entry("while exploring, with\ntries, in other worlds", **_explored(palette)),
             line_entry("the best, which is kept", **_best(palette)),
         ]
         explain(figure, rewards, entries)
         bar: Look = {"color": _tried(palette)["color"], "alpha": 0.35, "linewidth": 2.5}
         explain(figure, successes, [line_entry("95 % interval", **bar)])
+        figure.align_ylabels([rewards, successes])
     return figure
 
 

@@ -47,7 +47,8 @@ def _edits(by: Node, arbiter: Arbiter, learner: str, rules: DecisionList) -> Ite
     own = by.entries[learner].value if isinstance(by, Mapping) and learner in by.entries else None
     lines, data = _rules(arbiter, rules)
     content: dict[str, Plain] = {"otherwise": otherwise, "rules": data}
-    if _stands_in_lines(own) and set(own.entries) == set(content) and data:
+    is_plain = _quoted(otherwise) == otherwise
+    if _stands_in_lines(own) and set(own.entries) == set(content) and data and is_plain:
         yield NewText(("by", learner, "otherwise"), otherwise)
         yield NewLines(("by", learner, "rules"), tuple(lines), data)
         return

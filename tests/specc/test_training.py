@@ -1,0 +1,184 @@
+"""Training: the same however it is interrupted and divided; its rules are what was learnt."""
+
+import itertools
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lcs.policies.decision_list import always
+from runtime.run import run
+from runtime.scenario import Scenario
+from spec_schema.diagnostics import SpecError
+from specc.loading import load_scenario
+from specc.training.checkpoint import keep, taken_up
+from specc.training.episode import Task, lived, trained_arbiter
+from specc.training.folder import Begun, begin_in, scenario_in
+from specc.training.judging import AsItWas, judged
+from specc.training.pace import paced
+from specc.training.result import best_found, text_of
+from specc.training.settings import Settings
+from specc.training.spelled import with_rules
+from specc.training.training import AtRandom, Course, Generation, Took, Trial, exploring_tasks
+from specc.training.workers import Workers
+from specc.training.worlds import For, world
+from tests.specc.training_scenes import FILES, SMALL, equal, pen_in, trained, written_in
+
+TRIAL = Trial(1.0, 0.5, 3.0, 7)
+
+
+@pytest.fixture(scope="module")
+def pen(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
+    """The scenario, in files of its own."""
+    return pen_in(tmp_path_factory.mktemp("pen"))
+
+
+@pytest.fixture(scope="module")
+def whole(pen: Scenario) -> Course:
+    """A training that nobody interrupted."""
+    return trained(pen)
+
+
+def in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""
+
+
+def generation(episodes: int, reward: float, failed: tuple[int, ...] = ()) -> Generation:
+    """One that got so much reward."""
+    tried = replace(TRIAL, reward=reward)
+    return Generation(episodes, 9, TRIAL, tried, failed, always(0, 1), Took(0.0, 0.0, 0.0))
+
+
+def test_two_processes_learn_what_one_learns(pen: Scenario, whole: Course) -> None:
+    other = trained(pen, jobs=2)
+
+    assert len(other.generations) == len(whole.generations) == 2
+    for one, same in zip(other.generations, whole.generations, strict=True):
+        assert equal(one.rules, same.rules)
+        assert (one.explored, one.tried) == (same.explored, same.tried)
+
+
+def test_a_training_that_goes_on_from_its_checkpoint_learns_the_same(
+    pen: Scenario, whole: Course, tmp_path: Path
+) -> None:
+    first = whole.generations[0]
+    keep(Course(whole.lived[: first.episodes], [first]), tmp_path / "first.npz")
+
+    resumed = trained(pen, course=taken_up(tmp_path / "first.npz"))
+
+    assert equal(resumed.generations[1].rules, whole.generations[1].rules)
+    assert resumed.generations[1].tried == whole.generations[1].tried
+
+
+def test_a_checkpoint_holds_everything_to_the_bit(whole: Course, tmp_path: Path) -> None:
+    one, other = tmp_path / "one.npz", tmp_path / "other.npz"
+    keep(whole, one)
+    keep(taken_up(one), other)
+
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_checkpoint_that_is_damaged_anywhere_is_refused(whole: Course, tmp_path: Path) -> None:
+    path = tmp_path / "checkpoint.npz"
+    keep(whole, path)
+    data = path.read_bytes()
+    for length in range(0, len(data), len(data) // 7):
+        path.write_bytes(data[:length])
+        with pytest.raises(SpecError, match="V412"):
+            taken_up(path)
+
+
+def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course) -> None:
+    found = best_found(whole, pen, Begun("", SMALL, 10))
+    with Workers(pen, 1) as workers:
+        beside = judged(found, trained_arbiter(pen), 10, workers, in_silence)
+
+    assert [each.what for each in beside] == [
+        "what was learnt",
+        "all rules, by their vote",
+        "choices at random",
+    ]
+    assert beside[0].trial.reward > beside[2].trial.reward + 5.0
+    assert beside[0].low <= beside[0].trial.success <= beside[0].high
+    assert len(beside[2].failed) == round(10 * (1.0 - beside[2].trial.success))
+
+
+def test_what_was_best_is_learnt_again_to_the_bit(pen: Scenario, whole: Course) -> None:
+    assert equal(best_found(whole, pen, Begun("", SMALL, 10)).rules, whole.best.rules)
+
+
+def test_the_arbiter_with_its_rules_decides_in_a_run_as_the_list(
+    whole: Course, tmp_path: Path
+) -> None:
+    scenario = pen_in(tmp_path)
+    rules, seed = whole.best.rules, world(For.JUDGING, 0)
+    assert len(rules) > 0
+    text = with_rules(text_of(scenario, "alcsr"), trained_arbiter(scenario), "alcsr", rules).text
+    (tmp_path / "choose.yaml").write_text(text)
+    copy = load_scenario(tmp_path / "pen.yaml", seed=seed).scenario
+
+    steps = lived(scenario, Task(seed, rules, 0.0)).steps
+    chosen = run(copy).signals["r.choose.choice"].values
+
+    known = np.concatenate([steps.x, steps.after[-1:]])
+    told = rules.decide(known)
+    assert set(told.tolist()) == {0, 1}
+    changes = [choice for choice, _ in itertools.groupby(chosen[np.isfinite(chosen)].tolist())]
+    assert changes == [choice for choice, _ in itertools.groupby(told.tolist())]
+    grid = np.linspace(0.0, 2.0, 2001)[:, None]
+    near = np.concatenate([np.nextafter(rules.lower, 0.0), rules.lower, rules.upper])
+    places = np.concatenate([grid, near[np.isfinite(near)][:, None]])
+    assert (AsItWas(trained_arbiter(copy)).decide(places) == rules.decide(places)).all()
+
+
+def test_worlds_where_the_last_policy_failed_are_explored_again() -> None:
+    settings = Settings(episodes=20, each=8, again=0.25)
+    failing = Course([], [generation(8, 1.0, failed=(3, 5, 7))])
+    worlds = [task.world for task in exploring_tasks(failing, settings)]
+    again = {world(For.CHOOSING, number) for number in (3, 5, 7)}
+
+    assert len(worlds) == 8
+    assert len(set(worlds) & again) == 2
+    assert set(worlds) - again == {world(For.LEARNING, 8 + i) for i in range(2, 8)}
+
+
+def test_new_worlds_are_explored_where_nothing_failed() -> None:
+    settings = Settings(episodes=10, each=8)
+    tasks = exploring_tasks(Course([], [generation(8, 1.0)]), settings)
+
+    assert [task.world for task in tasks] == [world(For.LEARNING, 8), world(For.LEARNING, 9)]
+
+
+def test_it_stops_where_no_policy_got_better() -> None:
+    settings = Settings(episodes=100, patience=2)
+    rewards = [1.0, 3.0, 2.0, 3.0]
+    course = Course([], [generation(10 * i, reward) for i, reward in enumerate(rewards, 1)])
+
+    assert course.best is course.generations[1]
+    assert course.is_over(settings)
+    assert not Course([], course.generations[:3]).is_over(settings)
+    assert Course([], [generation(100, 1.0)]).is_over(settings)
+
+
+def test_the_world_alone_takes_a_part_of_an_episode(pen: Scenario) -> None:
+    pace = paced(pen, Task(world(For.JUDGING, 1), AtRandom(), 1.0))
+
+    assert pace.decisions > 1
+    assert 0.0 < pace.world < pace.seconds
+
+
+def test_rules_may_change_in_a_training_that_goes_on_and_nothing_else(tmp_path: Path) -> None:
+    path = written_in(tmp_path)
+    folder = tmp_path / "out"
+    begin_in(folder, Begun(str(path), SMALL, 1), load_scenario(path).scenario)
+    text, arbiter = FILES["choose.yaml"], tmp_path / "choose.yaml"
+
+    learnt = "{otherwise: turn, rules: [{choose: go, when: ahead > 0.5}]}"
+    arbiter.write_text(text.replace("alcsr: {}", f"xcsr: {learnt}").replace("0.9", "0.8"))
+    kept = scenario_in(folder, load_scenario(path).scenario)
+    assert len(trained_arbiter(kept).rules) == 1
+
+    arbiter.write_text(text.replace("[0, 2]", "[0, 3]"))
+    with pytest.raises(SpecError, match="V413"):
+        scenario_in(folder, load_scenario(path).scenario)
