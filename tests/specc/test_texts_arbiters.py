@@ -94,3 +94,25 @@ def test_the_numbers_are_those_of_the_controls_as_they_are_set() -> None:
 
     assert "ahead < near (0.19 m)" in arbiter_summary(arbiter)
     assert "until ahead > near + margin (0.62 m)" in arbiter_summary(arbiter, {"near": 0.6})
+
+
+def test_learned_rules_without_any_name_are_told_in_units_and_by_values(tmp_path: Path) -> None:
+    path = tmp_path / "learned.yaml"
+    head = HEAD[: HEAD.index("constants:")]
+    path.write_text(
+        f"""{head}choices: [look, avoid, dock]
+by:
+  alcsr:
+    otherwise: look
+    rules:
+      - {{choose: avoid, when: "ahead < 0.31 and used > 0.2"}}
+      - {{choose: dock, when: "ahead >= 0.31 and used > 0.2 and lamp == 'shown'"}}
+""",
+        encoding="utf-8",
+    )
+
+    assert arbiter_sentences(compile_arbiter(path).arbiter) == (
+        "rule 1: avoid, where ahead < 31 cm and used > 0.2",
+        "rule 2: dock, where used > 0.2 and lamp is shown",
+        "rule 3: look, otherwise",
+    )

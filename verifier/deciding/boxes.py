@@ -33,6 +33,8 @@ Box: TypeAlias = Mapping[str, Interval]
 
 LOWEST: Final[Cut] = (-inf, 0)
 HIGHEST: Final[Cut] = (inf, 1)
+NO_NAME: Final = " "
+"""An entry of the register that no code can read."""
 MOST_BOXES: Final = 400
 """A condition of more is not looked through."""
 MOST_STEPS: Final = 4000
@@ -101,8 +103,9 @@ def as_bound(compared: Compared, values: Values) -> tuple[str, str, float] | Non
 
 def value_of(code: Code, values: Values) -> float | None:
     """What code is worth that reads nothing; None where it does."""
-    names = tuple(values)
-    register = np.array([values[name] for name in names])
+    # The machine wants at least one entry: an arbiter may have no constant at all.
+    names = (NO_NAME, *values)
+    register = np.array([0.0, *values.values()])
     try:
         return float(evaluate([code], names, register)[0])
     except ValueError:  # it reads
