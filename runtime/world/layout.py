@@ -41,6 +41,10 @@ class NoRoomError(ValueError):
         self.name = name
         self.origin = origin
 
+    def __reduce__(self) -> tuple[type["NoRoomError"], tuple[str, str]]:
+        """Made anew in another process, where runs are spread over several."""
+        return type(self), (self.name, self.origin)
+
 
 @final
 @dataclass(frozen=True, slots=True)

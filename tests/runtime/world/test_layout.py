@@ -1,6 +1,7 @@
 """Scattered things and random robots stand free, by the seed alone."""
 
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -96,3 +97,9 @@ def test_places_in_a_bent_arena_are_inside_it() -> None:
         assert post.pose.x < 1.0 or post.pose.y < 1.0
     headings = [post.pose.heading for post in found.things]
     assert min(headings) < -math.pi / 2.0 < math.pi / 2.0 < max(headings)
+
+
+def test_that_there_is_no_room_can_be_told_by_another_process() -> None:
+    told = pickle.loads(pickle.dumps(NoRoomError("box_3", "w.yaml:4:3")))  # noqa: S301 our own
+    assert (told.name, told.origin) == ("box_3", "w.yaml:4:3")
+    assert str(told) == str(NoRoomError("box_3", ""))
