@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from runtime.rollout import Rollout as Rollout
     from spec_schema.diagnostics import Diagnostic as Diagnostic
     from spec_schema.diagnostics import SpecError as SpecError
+    from specc.book.export import export_book as export_book
     from specc.book.loading import LoadedBook as LoadedBook
     from specc.book.loading import load_book as load_book
     from specc.claiming import check_claims as check_claims
@@ -65,6 +66,7 @@ HOMES = {
     "SpecError": "spec_schema.diagnostics",
     "Verification": "specc.verifying.trace",
     "check": "compiler.check",
+    "export_book": "specc.book.export",
     "load_book": "specc.book.loading",
     "LoadedBook": "specc.book.loading",
     "check_claims": "specc.claiming",

@@ -9,6 +9,7 @@ from specc.book.contents import Contents, Progress, gathered
 from specc.book.entries import architecture_entry
 from specc.book.folder import MANIFEST, refuse_early, write_folder
 from specc.book.illustrations import figures_of
+from specc.book.loading import in_silence
 from specc.book.manifest import Book, Required
 from specc.book.naming import Names, names_of
 from specc.book.reader import READER, reader_text
@@ -23,21 +24,45 @@ PDF: Final = "book.pdf"
 def export_book(
     spec: Path | str,
     folder: Path | str,
-    progress: Progress,
+    progress: Progress = in_silence,
     *,
     allow_code: bool = False,
     with_pdf: bool = True,
 ) -> Book:
     """Write the book of an architecture or a scenario, and return its manifest.
 
+    Args:
+        spec: of the architecture or the scenario (.yaml).
+        folder: where the book shall be; an older book there is replaced.
+        progress: is told what is done, how much of it, and of how much.
+        allow_code: whether Python that the specs name may be run.
+        with_pdf: whether `book.pdf` is made, for which typst is needed.
+
     Raises:
         SpecError: the spec is wrong, or the book can't be put there.
     """
-    folder = Path(folder)
+    prepare(Path(folder), with_pdf=with_pdf)
+    contents = gathered(Path(spec), progress, allow_code=allow_code)
+    return write_book(contents, Path(folder), progress, with_pdf=with_pdf)
+
+
+def prepare(folder: Path, *, with_pdf: bool) -> None:
+    """Stops before the work begins where no book could be written in the end.
+
+    Raises:
+        SpecError: as `refuse_early` and `require_typst`.
+    """
     refuse_early(folder)
     if with_pdf:
         require_typst(folder / PDF)
-    contents = gathered(Path(spec), progress, allow_code=allow_code)
+
+
+def write_book(contents: Contents, folder: Path, progress: Progress, *, with_pdf: bool) -> Book:
+    """Write a book of these contents, and return its manifest.
+
+    Raises:
+        SpecError: it can't be put there.
+    """
     found = files_of(contents, progress, with_pdf=with_pdf)
     write_folder(folder, found)
     return manifest.from_bytes(found[MANIFEST])

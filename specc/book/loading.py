@@ -43,12 +43,12 @@ def load_book(path: Path | str) -> LoadedBook:
     return LoadedBook(path, book, scenario, tuple(pairs.values()))
 
 
-def _in_silence(_what: str, _done: int, _of: int) -> None:
+def in_silence(_what: str, _done: int, _of: int) -> None:
     """Nobody watches."""
 
 
 def compile_book(
-    path: Path | str, progress: Progress = _in_silence, *, allow_code: bool = False
+    path: Path | str, progress: Progress = in_silence, *, allow_code: bool = False
 ) -> bytes:
     """The artifact of a book, made anew from the specs in it: the same bytes.
 

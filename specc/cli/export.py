@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from specc.cli.console import print_json, print_text, progress_bar, say
+from specc.cli.console import print_json, print_text, say, show_diagnostics, shown_bar
 from specc.cli.options import Format, FormatOption
 
 
@@ -36,12 +36,19 @@ def export(
 
     `specc export specs/scenarios/light_hierarchy.yaml -o book/`
     """
-    from specc.book.export import export_book
+    from specc.book.contents import gathered
+    from specc.book.export import prepare, write_book
+    from specc.texts.book import book_record, book_text
 
-    with progress_bar(f"book of {spec.name}") as progress:
-        book = export_book(spec, output, progress, allow_code=allow_code, with_pdf=not no_pdf)
+    prepare(output, with_pdf=not no_pdf)
+    with shown_bar(f"book of {spec.name}") as bar:
+        contents = gathered(spec, bar.advance, allow_code=allow_code)
+        with bar.aside():
+            show_diagnostics(contents.warnings)
+        book = write_book(contents, output, bar.advance, with_pdf=not no_pdf)
     if form is Format.JSON:
-        print_json({"name": book.name, "folder": str(output), "files": len(book.files)})
+        print_json(book_record(book, output))
         return
-    print_text(f"{len(book.modules)} modules, {len(book.files)} files")
-    say(f"wrote {output}", "bold")
+    print_text(book_text(book))
+    size = sum(file.bytes for file in book.files)
+    say(f"wrote {output}: {len(book.files) + 1} files, {size / 1e6:.1f} MB", "bold")
