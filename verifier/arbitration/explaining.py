@@ -27,6 +27,8 @@ from verifier.report.wording import exact
 LATEST: Final = 20
 """Samples by which a robot may decide late."""
 MOST_STRAYS: Final = 10
+MOST_MOVED: Final = 12
+"""Of more thresholds, as learned rules have them, none is moved: each would take seconds."""
 UNTOLD_WIDTH: Final = 0.1
 """A threshold known no better than to this share of what was read is not told."""
 
@@ -51,11 +53,11 @@ def explained_by(
     """Thresholds moved, decisions that come late, or both; the simplest that is no worse."""
     if bool(agrees[decisions.judged].all()):
         return Explained(rules, 0, agrees, ())
-    moved = refitted(rules, decisions, scales)
-    delay = _delay(rules, decisions, scales)
-    options = [(rules, 0), (moved, 0)]
-    if delay:
-        options += [(rules, delay), (refitted(rules, later(decisions, delay), scales), delay)]
+    options = []
+    for k in dict.fromkeys((0, _delay(rules, decisions, scales))):
+        options.append((rules, k))
+        if can_move(rules):
+            options.append((refitted(rules, later(decisions, k), scales), k))
     tried = [(c, k, agreeing(c, later(decisions, k))) for c, k in options]
     best = tried[0]
     for option in tried[1:]:
@@ -66,6 +68,11 @@ def explained_by(
     )
     told = tuple(sorted({e.label: e for e in told if e.label}.values(), key=lambda e: -e.agreeing))
     return Explained(best[0], best[1], best[2], told)
+
+
+def can_move(rules: RuleChooser) -> bool:
+    """Whether thresholds are few enough to be moved one by one."""
+    return len(rules.values) <= MOST_MOVED
 
 
 def _delay(rules: RuleChooser, decisions: Decisions, scales: Scales) -> int:
@@ -125,7 +132,9 @@ def thresholds_of(
     decisions: Decisions,
     scales: Scales,
 ) -> tuple[Threshold, ...]:
-    """What the log says of each threshold, all others as explained."""
+    """What the log says of each threshold, all others as explained; of too many, nothing."""
+    if not can_move(rules):
+        return ()
     moved = later(decisions, explained.delay)
     return tuple(
         _threshold(arbiter, each, rules, explained, moved, scales) for each in _one_each(rules)

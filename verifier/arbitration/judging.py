@@ -11,7 +11,7 @@ from runtime.arrays import Booleans, Integers
 from verifier.arbitration.choosing import Chooser, RuleChooser, rule_chooser
 from verifier.arbitration.comparisons import opened
 from verifier.arbitration.decisions import Decisions, decisions_of
-from verifier.arbitration.explaining import explained_by, strays_of, thresholds_of
+from verifier.arbitration.explaining import can_move, explained_by, strays_of, thresholds_of
 from verifier.arbitration.numbers import (
     MOVABLE,
     Running,
@@ -37,6 +37,10 @@ from verifier.traces.trace import Trace
 
 AGREED: Final = 0.98
 """The share of decisions that must agree where an arbiter does not say."""
+TOO_MANY: Final = (
+    "its {} thresholds are too many to be moved one by one: "
+    "where decisions differ is told, not which number would make them agree"
+)
 VERDICTS: Final = {
     Standing.WITHIN: Verdict.PASS,
     Standing.EXCEEDED: Verdict.FAIL,
@@ -88,7 +92,10 @@ def judge_arbiter(
         explained = _by_numbers(arbiter, running, decisions, agrees, scales)
     section = _section(arbiter, rules, decisions, expected, agrees, scales, explained)
     standing = standing_of(section.share.interval.low, section.share.interval.high, required)
-    return Arbitrated(_report(arbiter, trace, decisions, section, VERDICTS[standing]), section)
+    report = _report(arbiter, trace, decisions, section, VERDICTS[standing])
+    if is_told and rules is not None and not can_move(rules):
+        report = replace(report, notes=(*report.notes, TOO_MANY.format(len(rules.values))))
+    return Arbitrated(report, section)
 
 
 def _asks_why(depth: Depth, agrees: Booleans, decisions: Decisions) -> bool:

@@ -138,15 +138,21 @@ def _compared(comparison: Comparison, readings: Array, value: float) -> Booleans
 def _phrases(
     arbiter: Arbiter, told: Sequence[Comparison], kind: Booleans, chooser: RuleChooser
 ) -> tuple[str, ...]:
-    """`front > 0.9 m` for each comparison, turned where it does not hold."""
+    """`front > 0.9 m` for each reading and side: of several comparisons the one that says most."""
     units = {read.name: read.unit for read in arbiter.reads}
-    phrases = []
+    phrases: dict[tuple[str, bool], tuple[float, str]] = {}
     for comparison, holds in zip(told, kind, strict=True):
         names = [name for name in comparison.reading.tokens if name in units]
-        value = exact(chooser.values[comparison.entry], units[names[0]])
+        value = chooser.values[comparison.entry]
         sign = COMPARING[comparison.word] if holds else OPPOSITE[comparison.word]
-        phrases.append(f"{infix(comparison.reading)} {sign} {value}")
-    return tuple(dict.fromkeys(phrases))
+        phrase = f"{infix(comparison.reading)} {sign} {exact(value, units[names[0]])}"
+        is_upper = sign[0] == "<"
+        side, tightness = (comparison.reading.text, is_upper), -value if is_upper else value
+        if side not in phrases or tightness > phrases[side][0]:
+            phrases[side] = (tightness, phrase)
+    order = list(dict.fromkeys(reading for reading, _ in phrases))
+    beside = sorted(phrases, key=lambda side: order.index(side[0]))
+    return tuple(phrases[side][1] for side in beside)
 
 
 def _ranged(read: Read, low: float, high: float) -> str:

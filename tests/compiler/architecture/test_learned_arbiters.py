@@ -17,6 +17,7 @@ from runtime.arrays import Array
 from runtime.machine import evaluate
 from runtime.program import Kind, Role, State, Unit
 from tests.verifier.arbitration.test_arbiters_judged import LOG, SPEC, section
+from verifier.report.report import Verdict
 
 ONE = Unit("1", 1.0)
 VALUES = ("open", "shut", "ajar")
@@ -192,6 +193,30 @@ def box_between(reads: tuple[State, ...], low: Array, high: Array) -> list[Limit
         for read, *ends in zip(reads, low, high, strict=True)
         for op, value in zip(("ge", "lt"), ends, strict=True)
     ]
+
+
+def test_of_many_rules_verify_says_where_decisions_differ_and_that_it_moved_no_number(
+    tmp_path: Path,
+) -> None:
+    """A fence of rules that say the same: each comparison is one, and a place is told once."""
+    rules = [
+        f'{{choose: slight_left, when: "left > 0.9 and front >= {0.9 + 0.1 * k:.1f}"}}'
+        for k in range(15, -1, -1)
+    ]
+    own = '{choose: sharp_right, when: "front <= 0.9"}, {choose: slight_right, when: "left < 0.6"}'
+    learned = f"by: {{alcsr: {{otherwise: forward, rules: [{', '.join(rules)}, {own}]}}}}\n"
+    before, _, after = SPEC.read_text().partition("by:\n")
+    path = tmp_path / "learned.yaml"
+    path.write_text(before + learned + "agreement:" + after.partition("agreement:")[2])
+
+    found = specc.verify(LOG, path)
+
+    assert found.report.verdict is Verdict.FAIL
+    assert section(found).thresholds == ()
+    assert any("too many to be moved one by one" in note for note in found.report.notes)
+    worst = section(found).cells[0]
+    assert "left < 0.6 m" in worst.conditions
+    assert max(len(cell.conditions) for cell in section(found).cells) <= 4
 
 
 @pytest.mark.parametrize("near", [0.4945, 0.55])
