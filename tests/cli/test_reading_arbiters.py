@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from specc.cli import main
-from specc.explaining import explain
+from specc.explaining import cropped, explain
 from specc.figures.decision_strip import draw_strip
 from specc.figures.decisions import draw_decisions
 from specc.figures.style_names import Style
@@ -120,7 +120,7 @@ def test_where_robot_and_spec_differ_it_is_marked(
     assert "(376 differ)" in text
     assert "26.222 to 27.444 s: DIFFERS: the robot chose forward, the spec slight_right" in text
     (found,) = explain(LOG, wrong)
-    figure = draw_strip(found)
+    figure = draw_strip(cropped(found, 20.0, 60.0))
     assert [axes.get_ylabel() for axes in figure.axes][:2] == ["robot", "spec"]
 
 

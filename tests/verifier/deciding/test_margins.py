@@ -61,7 +61,7 @@ def test_the_choice_that_is_explained_is_what_the_arbiter_chose(
         assert choice == (-1 if place < 0 else rules[place].choice)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(rule_lists(latching=True), READINGS)
 def test_the_margin_is_the_least_change_of_one_read_that_changes_the_choice(
     rules: list[Rule], readings: list[tuple[float, ...]]
