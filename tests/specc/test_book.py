@@ -21,7 +21,10 @@ from specc import loading
 from specc.book import folder, manifest
 from specc.book.export import export_book
 from specc.book.loading import compile_book
+from specc.book.origins import files_named, renamed
+from specc.book.sources import Sources, sources_of
 from specc.book.tables import interpolated, sheets_of
+from specc.book.views import views_at, views_of
 from specc.cli import main
 from tests.specc.book_scenes import ARCHITECTURE, FILES, SCENARIO, laid_down
 
@@ -357,3 +360,85 @@ def test_a_wrong_spec_is_told_and_nothing_is_written(tmp_path: Path) -> None:
         export_book(home / ARCHITECTURE, tmp_path / "book", quiet, with_pdf=False)
     assert "S102" in code_of(refused.value)
     assert not (tmp_path / "book").exists()
+
+
+def test_the_command_says_what_it_made_and_what_it_doubts(
+    home: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [str(home / SCENARIO), "-o", str(tmp_path / "b"), "--no-pdf", "--format", "json"]
+
+    assert main(["export", *arguments]) == 0
+    said = capsys.readouterr()
+    made = json.loads(said.out)
+    assert [module["node"] for module in made["modules"]] == ["index", "choose"]
+    assert made["files"] == len(contents_of(tmp_path / "b"))
+    assert "S363" in said.err  # the behavior is hypothetical
+
+
+GRID = "field:\n  grid: {over: [bearing], between: linear, file: rates.csv}\n"
+CODE = "field:\n  module: {call: spin:field}\n"
+
+
+@pytest.mark.parametrize(
+    ("field", "beside", "text"),
+    [
+        (GRID, "rates.csv", "bearing,bearing\n-3.2,0.1\n0,0\n3.2,-0.1\n"),
+        (CODE, "spin.py", "def field(bearing, gain):\n    return {'bearing': -gain * bearing}\n"),
+    ],
+)
+def test_what_lies_beside_a_spec_comes_along_and_makes_the_same_program(
+    tmp_path: Path, field: str, beside: str, text: str
+) -> None:
+    home = laid_down(tmp_path / "home")
+    face = FILES["face.yaml"].replace("kind: periodic", "kind: continuous")
+    face = face.replace("domain: [-pi, pi]", "domain: [-3.2, 3.2]")
+    own = "field:\n  formula:\n    bearing: -gain * sin(bearing)\n"
+    (home / "face.yaml").write_text(face.replace(own, field))
+    (home / beside).write_text(text)
+
+    first = compiled(home / ARCHITECTURE)
+    for path, name in first[1].names.items():
+        (tmp_path / "book" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, tmp_path / "book" / name)
+    again = compiled(tmp_path / "book" / "specs" / ARCHITECTURE)
+
+    assert f"specs/{beside}" in first[1].names.values()
+    assert again[0] == first[0]
+
+
+def compiled(spec: Path) -> tuple[bytes, Sources]:
+    """The artifact that a book of it has, and its sources."""
+    made = loading.compile_architecture_spec(spec, quiet, allow_code=True)
+    sources = sources_of(spec, made.architecture, made.body)
+    parts = renamed((made.architecture, made.body), sources.name_of)
+    return architecture_artifact.to_bytes(*parts), sources
+
+
+def test_origins_are_renamed_and_nothing_else(home: Path) -> None:
+    made = loading.compile_architecture_spec(home / ARCHITECTURE, quiet)
+    pair = (made.architecture, made.body)
+    there_and_back = renamed(renamed(pair, lambda name: f"x/{name}"), lambda name: name[2:])
+
+    assert set(files_named(renamed(pair, lambda _: "one.yaml"))) == {"one.yaml"}
+    assert architecture_artifact.to_bytes(*there_and_back) == architecture_artifact.to_bytes(*pair)
+
+
+def test_a_portrait_of_a_mode_is_over_what_moves_by_itself_in_it() -> None:
+    specs = Path(__file__).parents[2] / "specs"
+    program = loading.load_program(specs / "patrol_posts.yaml")
+    axes = {
+        view.title.partition(";")[0]: [axis.name for axis in view.portrait.axes]
+        for view in views_of(program, {"speed": 0.25})
+    }
+
+    assert axes == {
+        "going is west": ["west_bearing", "west_distance"],
+        "going is east": ["east_bearing", "east_distance"],
+    }
+
+
+def test_controls_that_do_not_change_the_field_make_no_portraits_more() -> None:
+    wander = loading.load_program(Path(__file__).parents[2] / "specs" / "wander.yaml")
+    settings = [manifest.Setting(f"{v}", (), {"speed": v, "wildness": 0.4}) for v in (0.1, 0.3)]
+
+    assert len(views_at(wander, settings)) == 1
