@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-errand study-principles study-lcs bench bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-errand study-principles study-lcs bench bench-train bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -99,6 +99,9 @@ bench: .venv/ready ## table lookup, the decoding of logs and learning beside the
 	$(BIN)/python tests/bench/lookup.py
 	$(BIN)/python tests/bench/decode.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench.lcs --seeds 1
+
+bench-train: .venv/ready ## how fast an arbiter is trained, beside the world alone, and which part takes what
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench.training
 
 bench-large: .venv/ready ## memory and time on a log of 2 GB, which is made in out/
 	$(BIN)/python tests/study/large_log.py
