@@ -1,7 +1,7 @@
 """`specc verify book/ runs/*.mcap`: which modules of a book are done."""
 
 from collections.abc import Sequence
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 from specc.book.loading import load_book
@@ -39,12 +39,12 @@ def verify_book(
         raise fault("V441", path, "no recording is named", f"specc verify {path} runs/*.mcap")
     book = load_book(path)
     how = How(
-        partial(program_for_verify, allow_code=allow_code),
+        cache(partial(program_for_verify, allow_code=allow_code)),
         spec,
         clock.value,
         allow_code=allow_code,
         strict=strict,
-        depth="all" if output or form is ReportFormat.JSON else "reasons",
+        depth="all" if output else "reasons",
     )
     judge = partial(judge_each, book, traces, how)
     outcomes, is_interrupted = judged_with_bar(judge, len(traces))

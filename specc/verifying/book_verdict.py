@@ -2,21 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache, partial
+from pathlib import Path
 
 from runtime.arbiter import Arbiter
 from runtime.program import Program
-from specc.book.loading import LoadedBook
+from specc.book.loading import LoadedBook, load_book
 from specc.book.trials import Trial
 from specc.verifying.architecture import NotJudged
-from specc.verifying.book import OfModules, Outcome
+from specc.verifying.book import How, OfModules, Outcome, judge_each
 from specc.verifying.book_missing import to_record, trials_of
 from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Piece, Standing, pieces_of
 from specc.verifying.runs import Unusable
-from specc.verifying.trace import Verification
+from specc.verifying.trace import Clock, Verification, program_for_verify
 from verifier.arbitration.together import pooled_decisions
 from verifier.architectures.telling import without_logs
 from verifier.fidelity.together import pooled
-from verifier.report.examination import Examination
+from verifier.report.examination import Depth, Examination
 from verifier.report.report import Verdict
 
 NEVER = "no recording holds it"
@@ -26,6 +28,34 @@ STANDINGS = {
     Verdict.FAIL: Standing.FAILS,
     Verdict.INCONCLUSIVE: Standing.LACKS,
 }
+
+
+def verify_book(
+    book: Path | str | LoadedBook,
+    traces: Sequence[Path | str],
+    spec: Path | str | None = None,
+    clock: Clock = "auto",
+    *,
+    allow_code: bool = False,
+    strict: bool = False,
+    depth: Depth = "all",
+) -> BookVerdict:
+    """Hold recordings against a book: where each of its modules stands, by all of them together.
+
+    Args:
+        spec: of a behavior or arbiter; it says where in logs things stand, where no log does.
+        allow_code: whether arbiters that are code of the user's own may be run.
+        strict: any loss in a log is an error.
+        depth: what is found out beside the verdict.
+
+    Raises:
+        SpecError: the book can't be used.
+    """
+    loaded = book if isinstance(book, LoadedBook) else load_book(book)
+    named = None if spec is None else Path(spec)
+    program_of = cache(partial(program_for_verify, allow_code=allow_code))
+    how = How(program_of, named, clock, allow_code, strict, depth)
+    return book_verdict(loaded, tuple(judge_each(loaded, [Path(each) for each in traces], how)))
 
 
 def book_verdict(book: LoadedBook, outcomes: Sequence[Outcome]) -> BookVerdict:

@@ -1,0 +1,98 @@
+"""Test procedures of arbiters: readings that tell the spec's own decisions from other ones."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from compiler.architecture.arbiters import compile_arbiter
+from runtime.arbiter import Arbiter
+from runtime.arrays import Array
+from verifier.arbitration.judging import judge_arbiter
+from verifier.arbitration.reader import CHOICE
+from verifier.procedure.bench import bench_test
+from verifier.procedure.bench_model import BenchTest
+from verifier.procedure.bench_wording import bench_sentences
+from verifier.report.report import Verdict
+from verifier.traces.trace import TICKS, Series, Trace
+
+PERIOD = 0.05
+
+
+@pytest.fixture(scope="module")
+def arbiter() -> Arbiter:
+    specs = Path(__file__).parents[3] / "specs"
+    return compile_arbiter(specs / "arbiters" / "who_moves.yaml").arbiter
+
+
+@pytest.fixture(scope="module")
+def bench(arbiter: Arbiter) -> BenchTest:
+    found = bench_test(arbiter, PERIOD)
+    assert found is not None
+    return found
+
+
+def who_moves(near: float, beside: float) -> Callable[[float, float, float], int]:
+    """The rules in who_moves.yaml, in Python: 0 turns away, 1 goes on."""
+    holds = False
+
+    def decide(ahead: float, left: float, right: float) -> int:
+        nonlocal holds
+        if ahead < near or min(left, right) < beside:
+            holds = True
+        elif ahead > near + 0.1 and min(left, right) > beside + 0.02:
+            holds = False
+        return 0 if holds else 1
+
+    return decide
+
+
+def shown_to(
+    arbiter: Arbiter, bench: BenchTest, decide: Callable[[float, float, float], int]
+) -> Verdict:
+    names = ("ahead", "left", "right")
+    ticks = round(bench.seconds / PERIOD)
+    rows = [[each.values[n] for n in names] for each in bench.shown for _ in range(ticks)]
+    rows *= bench.repeats
+    times: Array = PERIOD * np.arange(float(len(rows)))
+    told = np.array(rows)
+    series = {n: Series(n, times, told[:, i], n, TICKS) for i, n in enumerate(names)}
+    chosen = np.array([decide(*row) for row in rows], dtype=float)
+    series[CHOICE] = Series(CHOICE, times, chosen, CHOICE, TICKS)
+    trace = Trace("bench", series, {}, 0.0, (), ())
+    own = replace(arbiter, judge_when=None)
+    return judge_arbiter(own, trace, depth="verdict").report.verdict
+
+
+def test_one_that_decides_by_the_same_rules_passes(arbiter: Arbiter, bench: BenchTest) -> None:
+    assert shown_to(arbiter, bench, who_moves(0.2, 0.2)) is Verdict.PASS
+
+
+@pytest.mark.parametrize(("near", "beside"), [(0.32, 0.2), (0.08, 0.2), (0.2, 0.32), (0.2, 0.08)])
+def test_one_with_another_threshold_does_not(
+    arbiter: Arbiter, bench: BenchTest, near: float, beside: float
+) -> None:
+    assert shown_to(arbiter, bench, who_moves(near, beside)) is Verdict.FAIL
+
+
+def test_the_choices_that_are_told_are_those_of_the_rules(bench: BenchTest) -> None:
+    decide, ticks = who_moves(0.2, 0.2), round(bench.seconds / PERIOD)
+    for each in bench.shown:
+        names = ("ahead", "left", "right")
+        found = [decide(*(each.values[n] for n in names)) for _ in range(ticks)][-1]
+        assert ("turn_away", "go_on")[found] == each.chosen
+
+
+def test_it_is_told_in_words(bench: BenchTest) -> None:
+    told = bench_sentences(bench)
+    assert told[0].startswith(f"show the arbiter these {len(bench.shown)} sets of readings")
+    assert any(
+        line.startswith("1: ahead ") and line.endswith(("turn_away", "go_on")) for line in told
+    )
+    assert any("too high gets FAIL" in line for line in told)
+
+
+def test_an_arbiter_that_reads_nothing_has_none(arbiter: Arbiter) -> None:
+    assert bench_test(replace(arbiter, reads=()), PERIOD) is None
