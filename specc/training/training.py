@@ -235,10 +235,6 @@ def _standing(course: Course) -> str:
     """How the last policy did, and the best if that is another."""
     if not course.generations:
         return ""
-    best, last = course.best, course.generations[-1]
-    told = f"; last policy: {_did(last.tried)}"
-    return told if best is last else f"{told}; best: {_did(best.tried)}"
-
-
-def _did(tried: Trial) -> str:
-    return f"reward {tried.reward:.3g}, success {tried.success:.0%}"
+    best, last = course.best.tried, course.generations[-1].tried
+    told = f"; last: reward {last.reward:.3g}, success {100 * last.success:.0f} %"
+    return told if best is last else f"{told} (best {best.reward:.3g})"
