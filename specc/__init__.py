@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from specc.scenarios.pictures import film_run as film_run
     from specc.scenarios.simulating import Simulation as Simulation
     from specc.scenarios.simulating import simulate_scenario as simulate_scenario
+    from specc.verifying.book_verdict import verify_book as verify_book
     from specc.verifying.recording import RunVerification as RunVerification
     from specc.verifying.recording import verify_run as verify_run
     from specc.verifying.runs import Runs as Runs
@@ -84,6 +85,7 @@ HOMES = {
     "draw_run": "specc.scenarios.pictures",
     "film_run": "specc.scenarios.pictures",
     "verify": "specc.verifying.trace",
+    "verify_book": "specc.verifying.book_verdict",
     "verify_run": "specc.verifying.recording",
     "RunVerification": "specc.verifying.recording",
     "fit": "specc.fitting.fit",

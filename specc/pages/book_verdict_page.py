@@ -1,11 +1,13 @@
 """Where the modules of a book stand, as one page: a row for each, then what is known of each."""
 
+from collections.abc import Iterator
 from typing import Final
 
 from specc.figures.quantities import seconds
 from specc.pages.page import Page, RunRow, RunsPage, RunsTable
 from specc.pages.report_page import SIGNS, gathered, rendered
 from specc.texts.book_verdict import last_line, module_names, worst_first
+from specc.texts.scenario_runs import found_in
 from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Standing
 from verifier.report.report import Verdict
 
@@ -19,6 +21,12 @@ VERDICTS: Final = {
 HOW: Final = (
     "Each module is judged by all recordings of it together, where it had its way; it fails where"
     " it fails in one of them."
+)
+
+
+RUNS: Final = (
+    "Runs are those of the test procedure in the book that go where no recording has been; any one"
+    " of these lines that decides makes the others needless."
 )
 
 
@@ -37,7 +45,7 @@ def gathered_book(verdict: BookVerdict) -> RunsPage:
         RunRow("", each.source, "unusable", "!", (), each.error.diagnostics[0].message)
         for each in verdict.unusable
     )
-    titles = ("kind", "is", "judged")
+    titles = ("kind", "judged", "what was found")
     return RunsPage(
         title=f"{verdict.name}: {last_line(verdict)}",
         verdict=str(worst),
@@ -48,8 +56,13 @@ def gathered_book(verdict: BookVerdict) -> RunsPage:
             for each in ordered
             if each.standing in {Standing.FAILS, Standing.LACKS}
         ),
-        advice=tuple(f"{names[id(each)]}: {told}" for each in ordered for told in each.to_record),
-        tables=(RunsTable("Every module", "module", titles, (*rows, *lost), HOW),),
+        advice=tuple(
+            f"{names[id(each)]}: {each.to_record[0]}" for each in ordered if each.to_record
+        ),
+        tables=(
+            RunsTable("Every module", "module", titles, (*rows, *lost), HOW, words=True),
+            *_to_record(ordered, names, anchors),
+        ),
         pages=tuple(_page(each, anchors[id(each)]) for each in ordered if each.together),
     )
 
@@ -57,8 +70,29 @@ def gathered_book(verdict: BookVerdict) -> RunsPage:
 def _row(each: ModuleVerdict, name: str, anchor: str) -> RunRow:
     shown = VERDICTS[each.standing]
     judged = "–" if each.together is None else seconds(each.together.report.trace.judged)
-    cells = ((each.piece.kind, ""), (str(each.standing), ""), (judged, ""))
+    found = each.why[0] if each.together is None else found_in(each.together)
+    cells = ((each.piece.kind, ""), (judged, ""), (found, ""))
     return RunRow(anchor if each.together else "", name, str(shown), SIGNS[shown], cells, "")
+
+
+def _to_record(
+    ordered: list[ModuleVerdict], names: dict[int, str], anchors: dict[int, str]
+) -> Iterator[RunsTable]:
+    """What is still to be recorded, a row for each sentence."""
+    rows = tuple(
+        RunRow(
+            anchors[id(each)] if each.together else "",
+            names[id(each)],
+            str(VERDICTS[each.standing]),
+            SIGNS[VERDICTS[each.standing]],
+            ((told, ""),),
+            "",
+        )
+        for each in ordered
+        for told in each.to_record
+    )
+    if rows:
+        yield RunsTable("What is still to be recorded", "module", ("what",), rows, RUNS, words=True)
 
 
 def _page(each: ModuleVerdict, anchor: str) -> tuple[str, Page]:

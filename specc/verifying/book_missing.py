@@ -29,7 +29,10 @@ def to_record(trial: Trial, found: Examination | None) -> tuple[str, ...]:
     if trial.procedure is not None:
         coverage = None if found is None else found.report.coverage
         runs = remaining_runs(trial.procedure, coverage)
-        return (*advice, *runs_in_words(trial.procedure, runs))
+        return (
+            *advice,
+            *(f"test procedure, {told}" for told in runs_in_words(trial.procedure, runs)),
+        )
     if trial.bench is not None:
-        return (*advice, f"or on a bench, by its page: {how_sentence(trial.bench)}")
+        return (*advice, f"test procedure: {how_sentence(trial.bench)}; see its page")
     return (*advice, f"there is no test procedure: {trial.without}")
