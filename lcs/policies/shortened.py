@@ -1,19 +1,24 @@
 """Lists whose bounds have few digits, and that decide as before wherever anything was lived."""
 
 import dataclasses
+from typing import Final
 
 import numpy as np
 
 from lcs.arrays import Array
 from lcs.policies.decision_list import DecisionList, holds
-from lcs.rules.digits import snapped
+from lcs.rules.digits import shortest_between
+
+MARGIN: Final = 0.25
+"""Of a gap between two lived places, on either side of a bound in it."""
 
 
 def shortened(rules: DecisionList, x: Array) -> DecisionList:
     """The list with bounds of as few digits as leave each decision at places x (T, n) as it is.
 
-    One bound after the other is moved between the places on its two sides that no earlier rule
-    holds and that the rule's other bounds let in. Without such a place beyond it, it is dropped.
+    One bound after the other is moved into the middle of the gap between the places on its two
+    sides that no earlier rule holds and that the rule's other bounds let in: 0.5 where all places
+    are 0 or 1. Without such a place beyond it, it is dropped.
     """
     made = dataclasses.replace(rules, lower=rules.lower.copy(), upper=rules.upper.copy())
     left = x
@@ -32,16 +37,20 @@ def shortened(rules: DecisionList, x: Array) -> DecisionList:
 def _lower(bound: float, values: Array) -> float:
     """A bound that lets in the same of the values, each x with bound <= x."""
     out, let_in = values[values < bound], values[values >= bound]
-    if not len(out):
-        return -np.inf
-    return snapped(float(out.max()), float(let_in.min(initial=bound)), bound)
+    return _between(out, let_in, bound) if len(out) else -np.inf
 
 
 def _upper(bound: float, values: Array) -> float:
     """A bound that lets in the same of the values, each x with x < bound."""
     let_in, out = values[values < bound], values[values >= bound]
-    if not len(out):
-        return np.inf
-    if not len(let_in):
+    return _between(let_in, out, bound) if len(out) else np.inf
+
+
+def _between(below: Array, above: Array, bound: float) -> float:
+    """A number of few digits that parts the values as the bound does, and is next to neither."""
+    if not len(below) or not len(above):
         return bound
-    return snapped(float(let_in.max()), float(out.min()), bound)
+    low, high = float(below.max()), float(above.min())
+    margin = MARGIN * (high - low)
+    short = shortest_between(low + margin, high - margin, 0.5 * (low + high))
+    return short if low < short <= high else high

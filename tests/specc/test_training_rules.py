@@ -68,13 +68,15 @@ def test_short_bounds_decide_the_same_wherever_anything_was_lived(
 
 
 def test_bounds_get_short_and_those_that_no_place_asks_for_are_dropped() -> None:
-    x = np.array([[0.1], [0.29], [0.34], [0.8]])
+    x = np.array([[0.1], [0.28], [0.35], [0.8]])
     bounds = np.array([[0.05123]]), np.array([[0.3123456]])
     one = np.ones(1, np.int64)
     short = shortened(DecisionList(one, *bounds, one, one, 0), x)
 
     assert short.lower[0, 0] == -np.inf
     assert short.upper[0, 0] == 0.3
+    flags = shortened(DecisionList(one, *bounds, one, one, 0), np.array([[0.0], [0.06], [1.0]]))
+    assert (flags.lower[0, 0], flags.upper[0, 0]) == (0.03, 0.5)
 
 
 @settings(max_examples=30)
