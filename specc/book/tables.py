@@ -2,8 +2,8 @@
 
 Each quantity gets a table of its own (in each mode one), over those states and wired controls that
 change it there, so that a field of many states needs no grid over all of them. Between the nodes a
-reader goes on linearly. Nodes are added where the values bend until that is near enough, or the
-table is as large as it may be; then the error is measured at random places, against the program.
+reader goes on linearly. Nodes are added where the values bend, or are off, until that is near
+enough or the table is as large as it may be; then the error is measured at other random places.
 Values are in the spec's own units.
 """
 
@@ -188,7 +188,9 @@ def _sheet(reader: _Reader, quantity: str, setting: str, moving: frozenset[str])
     parts = reader.axes(moving)
     nodes: tuple[Array, ...] = tuple(map(_first_nodes, parts))
     values = _tabulated(reader, parts, nodes)
-    while (finer := _finer(parts, nodes, values)) is not None:
+    while (
+        finer := _finer(parts, nodes, values) or _finer_where_off(reader, parts, nodes, values)
+    ) is not None:
         nodes, values = finer, _tabulated(reader, parts, finer)
     error, size = _measured(reader, parts, nodes, values)
     names = tuple(part.name for part in parts)
@@ -225,6 +227,27 @@ def _finer(
     return None
 
 
+def _finer_where_off(
+    reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
+) -> tuple[Array, ...] | None:
+    """More nodes around places where the table is off though it does not bend: beside a kink."""
+    points, off, size = _probed(reader, parts, nodes, values, SEED)
+    bad = points[off > FINE * size]
+    finer = []
+    for k, (part, own) in enumerate(zip(parts, nodes, strict=True)):
+        if _is_discrete(part):
+            finer.append(own)
+            continue
+        cells = np.clip(np.searchsorted(own, bad[:, k], side="right") - 1, 0, len(own) - 2)
+        wide = np.diff(own) > NARROWEST * (own[-1] - own[0])
+        hit = np.zeros(len(own) - 1, dtype=np.bool_)
+        hit[cells] = True
+        finer.append(np.sort(np.concatenate([own, 0.5 * (own[1:] + own[:-1])[hit & wide]])))
+    counts = [len(own) for own in finer]
+    is_more = counts != [len(own) for own in nodes]
+    return tuple(finer) if is_more and np.prod(counts) <= LARGEST else None
+
+
 def _bending(nodes: Array, values: Array, axis: int) -> Array:
     """At each inner node (n,) what is lost beside it by going straight: a quarter of its bend."""
     rows = np.moveaxis(values, axis, 0).reshape(len(nodes), -1)
@@ -244,7 +267,16 @@ def _split(nodes: Array, bent: Booleans) -> Array:
 def _measured(
     reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
 ) -> tuple[float, float]:
-    chance = np.random.default_rng(SEED)
+    """The largest error and value at places that did not choose the nodes."""
+    _, off, size = _probed(reader, parts, nodes, values, SEED + 1)
+    return float(off.max(initial=0.0)), size
+
+
+def _probed(
+    reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array, seed: int
+) -> tuple[Array, Array, float]:
+    """Random places (N, d), how far the table is off there (N,), and the largest value seen."""
+    chance = np.random.default_rng(seed)
     columns = [
         chance.integers(0, len(own), PROBES).astype(float)
         if _is_discrete(part)
@@ -253,11 +285,8 @@ def _measured(
     ]
     points = np.stack(columns, axis=-1) if columns else np.zeros((1, 0))
     exact = reader.at(parts, points)
-    read = interpolated(nodes, values, points)
-    known = np.isfinite(exact) & np.isfinite(read)
-    if not known.any():
-        return 0.0, 0.0
-    return float(np.abs(read - exact)[known].max()), float(np.abs(exact[known]).max())
+    off = np.nan_to_num(np.abs(interpolated(nodes, values, points) - exact), nan=0.0)
+    return points, off, float(np.nan_to_num(np.abs(exact), nan=0.0).max())
 
 
 def interpolated(nodes: tuple[Array, ...], values: Array, points: Array) -> Array:

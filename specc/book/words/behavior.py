@@ -218,7 +218,7 @@ def _modes(program: Program) -> Iterator[Block]:
         f"It has a memory: `{field.mode}` is the mode that it is in, one of"
         f" {', '.join(f'`{v}`' for v in values)}. Each mode has a field of its own, and is left as"
         " soon as one of its conditions holds; between two ticks too. It begins in"
-        f" `{value_of(mode, mode.hold)}`, where nothing else is said."
+        f" {value_of(mode, mode.hold)}, where nothing else is said."
     )
     for index, value in enumerate(values):
         yield Heading(f"While `{field.mode}` is `{value}`")

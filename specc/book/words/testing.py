@@ -10,11 +10,10 @@ from verifier.procedure.bench_wording import rehearsal_sentences as bench_rehear
 from verifier.procedure.model import Procedure
 from verifier.procedure.wording import (
     drive_phrase,
-    excited_sentences,
     log_sentence,
     rehearsal_sentences,
 )
-from verifier.report.wording import exact, seconds
+from verifier.report.wording import exact, number, seconds
 
 TITLE = "Test procedure"
 
@@ -36,11 +35,14 @@ def _without(shown: Shown) -> tuple[Block, ...]:
 
 
 def _procedure(procedure: Procedure) -> Iterator[Block]:
+    found, count = procedure.rehearsal, len(procedure.drives)
+    runs = "this run" if count == 1 else f"these {count} runs"
+    decides = found is not None and found.decides
+    worth = "the verifier can decide by them" if decides else "but see below what they leave open"
     yield Paragraph(
-        f"Record these {len(procedure.drives)} runs, {seconds(procedure.seconds)} in all: the"
-        " verifier can decide about them. A starting place need not be met exactly, since what was"
-        " measured counts; where the surroundings allow one not at all, take the nearest that they"
-        " do. Each run may be a recording of its own."
+        f"Record {runs}, {seconds(procedure.seconds)} in all: {worth}. A starting place need not be"
+        " met exactly, since what was measured counts; where the surroundings do not allow one,"
+        " take the nearest that they do. Each run may be a recording of its own."
     )
     yield Bullets(
         tuple(_sentence(drive_phrase(procedure, drive)) for drive in procedure.drives),
@@ -48,9 +50,30 @@ def _procedure(procedure: Procedure) -> Iterator[Block]:
     )
     yield Paragraph(_sentence(log_sentence(procedure)))
     yield Bullets(tuple(map(_sentence, rehearsal_sentences(procedure))))
-    told = (*excited_sentences(procedure), *procedure.remarks)
-    if told:
-        yield Bullets(tuple(map(_sentence, told)))
+    if procedure.excited:
+        yield from _excited(procedure)
+    if procedure.remarks:
+        yield Bullets(tuple(map(_sentence, procedure.remarks)))
+
+
+def _excited(procedure: Procedure) -> Iterator[Block]:
+    """By how much each input shows in these runs."""
+    units = {each.name: each.unit for each in procedure.signals}
+    rows = tuple(
+        (
+            f"`{each.name}`",
+            exact(each.low, units[each.name]),
+            exact(each.high, units[each.name]),
+            number(each.effect),
+        )
+        for each in procedure.excited
+    )
+    yield Paragraph(
+        "What is set or sensed has to show in what is judged. By how many tolerances it moves that"
+        " within the horizon, from one end of what these runs hold it at to the other:",
+        is_small=True,
+    )
+    yield Table(("input", "from", "to", "tolerances"), rows, numbers=(1, 2, 3))
 
 
 def _bench(test: BenchTest) -> Iterator[Block]:

@@ -1,14 +1,17 @@
 """The topology of a portrait as tables: what a robot's own field must have, too."""
 
+from collections.abc import Sequence
+from typing import Final
+
 from specc.book.chapters import Block, Bullets, Paragraph, Table
 from specc.figures.quantities import number, seconds
 from specc.texts.portrait import proof_sentences
-from verifier.topology.features import Basins, Cycle, FixedPoint, Portrait, Standing
+from verifier.topology.features import Basins, Cycle, FixedPoint, PointKind, Portrait, Standing
 from verifier.topology.names import attractor_names, cycle_names, place
 from verifier.topology.words import share_words
 
-MOST: int = 12
-"""Fixed points that are listed; of more it is said how many there are."""
+MOST: Final = 3
+"""Degenerate points that are listed; of more it is said how many there are."""
 
 
 def topology_blocks(portrait: Portrait) -> tuple[Block, ...]:
@@ -19,10 +22,11 @@ def topology_blocks(portrait: Portrait) -> tuple[Block, ...]:
         titles = ("fixed point", "at", "eigenvalues, 1/s", "known by")
         if portrait.every > 0.0:
             titles = ("fixed point", "at", "multipliers per step", "known by")
-        rows = tuple(_point(each, portrait) for each in points[:MOST])
-        blocks.append(Table(titles, rows))
-        if len(points) > MOST:
-            blocks.append(Paragraph(f"and {len(points) - MOST} more like these", is_small=True))
+        shown = _telling(points)
+        blocks.append(Table(titles, tuple(_point(each, portrait) for each in shown)))
+        if len(points) > len(shown):
+            more = f"And {len(points) - len(shown)} more, which are degenerate like the last ones."
+            blocks.append(Paragraph(more, is_small=True))
     if portrait.cycles:
         rows = tuple(
             _cycle(name, each)
@@ -38,6 +42,13 @@ def topology_blocks(portrait: Portrait) -> tuple[Block, ...]:
     if told:
         blocks.append(Bullets(tuple(f"{_capital(text)}." for text in told)))
     return tuple(blocks)
+
+
+def _telling(points: Sequence[FixedPoint]) -> list[FixedPoint]:
+    """Those with a type first; of curves of degenerate ones a few."""
+    typed = [point for point in points if point.kind is not PointKind.DEGENERATE]
+    others = [point for point in points if point.kind is PointKind.DEGENERATE]
+    return typed + others[:MOST]
 
 
 def _point(point: FixedPoint, portrait: Portrait) -> tuple[str, ...]:
