@@ -62,13 +62,18 @@ def draw_training(
         entries = [
             line_entry(f"policy, in the same {one.worlds}\nworlds each time", **_tried(palette)),
             line_entry("while exploring, with\ntries, in other worlds", **_explored(palette)),
-            line_entry("the best, which is kept", **_best(palette)),
+            line_entry(_kept(one), **_best(palette)),
         ]
         explain(figure, rewards, entries)
         bar: Look = {"color": _tried(palette)["color"], "alpha": 0.35, "linewidth": 2.5}
         explain(figure, successes, [line_entry("95 % interval", **bar)])
         figure.align_ylabels([rewards, successes])
     return figure
+
+
+def _kept(one: Improving) -> str:
+    reward, success = one.tried[one.best], one.tried_success[one.best]
+    return f"the best, which is kept:\nreward {number(reward)}, success {100.0 * success:.0f} %"
 
 
 def _draw(axes: Axes, one: Improving, explored: Array, tried: Array, palette: Palette) -> None:
