@@ -73,10 +73,21 @@ def test_a_training_that_goes_on_from_its_checkpoint_learns_the_same(
 
 def test_a_checkpoint_holds_everything_to_the_bit(whole: Course, tmp_path: Path) -> None:
     one, other = tmp_path / "one.npz", tmp_path / "other.npz"
-    keep(whole, one)
-    keep(taken_up(one), other)
+    first, last = whole.generations
+    course = Course(whole.lived, [replace(first, failed=(1, 2)), last])
+    keep(course, one)
+    kept = taken_up(one)
+    keep(kept, other)
 
     assert one.read_bytes() == other.read_bytes()
+    assert [each.failed for each in kept.generations] == [(1, 2), last.failed]
+    for mine, its in zip(course.generations, kept.generations, strict=True):
+        assert equal(mine.rules, its.rules)
+        assert (mine.explored, mine.tried, mine.took) == (its.explored, its.tried, its.took)
+    assert all(
+        (mine.x == its.x).all() and (mine.reward == its.reward).all()
+        for mine, its in zip(course.lived, kept.lived, strict=True)
+    )
 
 
 def test_a_checkpoint_that_is_damaged_anywhere_is_refused(whole: Course, tmp_path: Path) -> None:

@@ -88,13 +88,14 @@ def test_a_compiled_copy_decides_as_the_list(
     path.write_text(HEAD + next(iter(LAYOUTS)))
     x = np.random.default_rng(0).uniform(-2.0, 2.0, (60, 2))
     x[:, 1] = np.arange(60) % 3
+    rules = shortened(rules, x)
+    kept = [r for r in range(len(rules)) if _values(rules, r)]
+    rules = replace(rules, **{name: getattr(rules, name)[kept] for name in NAMES})
+
     bounds = np.concatenate([rules.lower[:, 0], rules.upper[:, 0]])
     at = np.repeat(bounds[np.isfinite(bounds)], 3)
     near = np.stack([at, np.arange(len(at)) % 3], axis=1)
     below = near - [[1e-15, 0.0]]
-    rules = shortened(rules, x)
-    kept = [r for r in range(len(rules)) if _values(rules, r)]
-    rules = replace(rules, **{name: getattr(rules, name)[kept] for name in NAMES})
 
     path.write_text(with_rules(load(path), compile_arbiter(path).arbiter, "alcsr", rules).text)
 
@@ -116,16 +117,17 @@ def test_comments_and_all_else_are_kept(by: str, tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
     path.write_text(HEAD + by)
     lower = np.array([[-0.5, -np.inf], [np.nextafter(0.9, 1.0), 1.0]])
-    upper = np.array([[np.nextafter(0.25, 1.0), 1.0], [np.inf, np.inf]])
+    upper = np.array([[np.nextafter(0.25, 1.0), 1.0], [1.5, np.inf]])
     counts = np.array([[4, 5], [0, 1]])
     rules = DecisionList(np.array([1, 0]), lower, upper, counts[0], counts[1], otherwise=2)
 
     made = with_rules(load(path), compile_arbiter(path).arbiter, "alcsr", rules).text
 
     first = "ahead >= -0.5 and ahead <= 0.25 and door == 'open'"
+    second = "ahead > 0.9 and ahead < 1.5 and door != 'open'"
     lines = (
         f'- {{choose: "true", when: "{first}", right: 4, wrong: 0}}',
-        "- {choose: go, when: \"ahead > 0.9 and door != 'open'\", right: 5, wrong: 1}",
+        f'- {{choose: go, when: "{second}", right: 5, wrong: 1}}',
     )
     block = "".join(f"      {line}\n" for line in lines)
     wanted = HEAD + LAYOUTS[by].replace("{6}", block)
