@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-errand study-principles study-lcs bench bench-train bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-book study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-errand study-principles study-lcs bench bench-train bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -51,6 +51,9 @@ study: study-verify ## error rates, which departures the diagnosis names, refitt
 study-verify: .venv/ready ## error rates of the verdict: 24,000 recordings with planted departures
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.verdicts
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.scores
+
+study-book: .venv/ready ## each behavior of an architecture sabotaged in turn: does the book's verification name it?
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.sabotage
 
 study-principles: .venv/ready ## the thesis's principles with figures, and an hour under artificial load
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.principles

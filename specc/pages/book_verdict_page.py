@@ -24,10 +24,7 @@ HOW: Final = (
 )
 
 
-RUNS: Final = (
-    "Runs are those of the test procedure in the book that go where no recording has been; any one"
-    " of these lines that decides makes the others needless."
-)
+RUNS: Final = "Runs are those of the book's test procedure that go where no recording has been."
 
 
 def book_verdict_page(verdict: BookVerdict) -> str:

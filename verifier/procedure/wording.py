@@ -123,4 +123,4 @@ def runs_in_words(procedure: Procedure, runs: Sequence[int]) -> tuple[str, ...]:
     """Some of the runs, by their numbers from 0, and what to log in them."""
     every = run_sentences(procedure)
     told = tuple(every[run] for run in runs)
-    return (*told, log_sentence(procedure)) if told else ()
+    return (*told, f"in each run {log_sentence(procedure)}") if told else ()
