@@ -97,7 +97,7 @@ def _compaction(trained: Trained) -> list[str]:
     """What it costs that the rules are few."""
     few, votes = trained.judged[0], trained.judged[1]
     cost = votes.trial.reward - few.trial.reward
-    became = f"compaction made {few.rules} of {counted(votes.rules or 0, 'rule')}"
+    became = f"{counted(votes.rules or 0, 'rule')} became {few.rules} by compaction"
     if abs(cost) <= SAME * abs(votes.trial.reward):
         return [f"{became}, which costs no reward"]
     if cost > 0.0:
@@ -142,12 +142,10 @@ def _speed_rows(shares: Shares) -> list[tuple[str, str]]:
         ("beginning and rewards", shares.rewards),
         ("learning", shares.learning),
     )
-    speed = (
-        f"{shares.per_second:,.0f} decisions a second; of a run of the world alone, under the same "
-        f"commands, {shares.per_second_bare:,.0f} on one process"
-    )
+    bare = f"{shares.per_second_bare:,.0f} decisions a second: the same commands, and nothing else"
     return [
         ("time", f"{shares.seconds:,.1f} s on {processes}"),
-        ("speed", speed),
+        ("speed", f"{shares.per_second:,.0f} decisions a second"),
+        ("the world alone", f"{bare}, on one process"),
         ("shares", ", ".join(f"{what} {100 * share:.0f} %" for what, share in parts)),
     ]

@@ -43,10 +43,11 @@ def test_what_was_learnt_is_left_told_and_written(capsys: pytest.CaptureFixture[
         "in 2 worlds held out",
         "what was learnt ",
         "choices at random ",
-        "compaction made 1 of",
+        " became 1 by compaction, which costs",
         "rule 1: go, where ahead >= 0.38",
         "rule 2: turn, otherwise",
         "decisions a second",
+        "the world alone ",
     ):
         assert words in told.out
     assert "wrote choose.yaml, summary.txt, summary.json, curves.svg into out" in told.err
