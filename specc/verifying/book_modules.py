@@ -74,12 +74,11 @@ class ModuleVerdict:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class BookVerdict:
-    """All modules of a book, in its order. notes: what of the recordings is of no module."""
+    """All modules of a book, in its order, and recordings that can't be used."""
 
     name: str
     modules: tuple[ModuleVerdict, ...]
     unusable: tuple[Unusable, ...]
-    notes: tuple[str, ...]
 
     @property
     def standing(self) -> Standing:

@@ -67,7 +67,6 @@ def book_verdict(book: LoadedBook, outcomes: Sequence[Outcome]) -> BookVerdict:
         name=book.book.name,
         modules=tuple(_module(piece, trials[piece.place], told) for piece in pieces),
         unusable=tuple(each for each in outcomes if isinstance(each, Unusable)),
-        notes=(),
     )
 
 

@@ -30,6 +30,7 @@ QUIET_INPUT: Final = 0.002
 """The same of what is only sensed, as a share of its domain."""
 QUIET_LEVEL: Final = 0.02
 """But no louder than this share of a value beside a threshold."""
+NO_RUN: Final = "no run of the behavior alone lasts long enough within its domain to be judged"
 SEED: Final = 7
 
 
@@ -54,7 +55,7 @@ def procedure_of(
     chosen = plans.part(np.array(runs, dtype=np.int64))
     signals = _signals(program, fidelity)
     repeats, rehearsal = 1, None
-    if is_rehearsed:
+    if is_rehearsed and runs:
         staging = Staging(program, chosen, signals, every, SEED)
         repeats, rehearsal = rehearsed(staging, tuple(fidelity.tolerance))
     return Procedure(
@@ -132,6 +133,8 @@ def _excitation(
 ) -> Excitation:
     """What the chosen runs hold one input at, and what that changes."""
     values = chosen.held[:, :, program.register.index(name)]
+    if not runs:
+        return Excitation(name, 0.0, 0.0, 0.0)
     return Excitation(
         name, float(values.min()), float(values.max()), float(effect[list(runs)].max(initial=0.0))
     )
@@ -141,7 +144,9 @@ def _remarks(
     fidelity: Fidelity, goals: Goals, runs: tuple[int, ...], rehearsal: Rehearsal | None
 ) -> tuple[str, ...]:
     """What the runs leave open."""
-    met = reached(goals, runs) if runs else np.zeros(len(goals.needs))
+    if not runs:
+        return (NO_RUN,)
+    met = reached(goals, runs)
     told = []
     if goals.is_cell.any():
         share = float(np.mean(met[goals.is_cell] >= 1.0))

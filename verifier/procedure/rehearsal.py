@@ -26,6 +26,8 @@ FORBIDDEN: Final = 2.0
 """A planted robot is carried away by so many tolerances at the horizon, on average."""
 MOST_REPEATS: Final = 40
 """Nobody repeats a run more often."""
+MOST_RECORDINGS: Final = 150
+"""Nobody makes more of one behavior."""
 ENOUGH: Final = 16
 """So often, at most, for the sake of what is planted, or of changes of mode."""
 SPARE: Final = 1.3
@@ -57,14 +59,17 @@ def rehearsed(staging: Staging, names: Sequence[str]) -> tuple[int, Rehearsal]:
     repeats, judgements = 1, _judgements(staging, staging.program, range(1))
     report = _together(staging, judgements)
     while report.verdict is Verdict.INCONCLUSIVE:
-        more = _repeats(repeats, report)
+        more = _repeats(repeats, report, len(staging.plans.start))
         if more <= repeats:
             break
         judgements += _judgements(staging, staging.program, range(repeats, more))
         repeats, report = more, _together(staging, judgements)
     planted = tuple(_planted(staging, name, repeats) for name in names)
-    while report.verdict is Verdict.PASS and repeats < ENOUGH and not all(map(_is_caught, planted)):
+    most = min(ENOUGH, MOST_RECORDINGS // len(staging.plans.start))
+    while report.verdict is Verdict.PASS and not all(map(_is_caught, planted)):
         more = 2 * repeats
+        if more > most:
+            break
         judgements += _judgements(staging, staging.program, range(repeats, more))
         repeats, report = more, _together(staging, judgements)
         planted = tuple(_planted(staging, name, repeats) for name in names)
@@ -74,12 +79,13 @@ def rehearsed(staging: Staging, names: Sequence[str]) -> tuple[int, Rehearsal]:
     return repeats, Rehearsal(report.verdict, share, judged, report.reasons, planted)
 
 
-def _repeats(repeats: int, report: Report) -> int:
+def _repeats(repeats: int, report: Report, runs: int) -> int:
     """How often to try next: as much more as the verifier itself would ask for."""
+    most = min(MOST_REPEATS, max(MOST_RECORDINGS // runs, 1))
     short = [r for r in report.variables if r.standing is Standing.UNDECIDED]
     factor = max((times_more(result) for result in short), default=0.0)
     wanted = repeats * min(max(SPARE * factor, 2.0), FASTEST)
-    return int(min(np.ceil(wanted), MOST_REPEATS if short else ENOUGH))
+    return int(min(np.ceil(wanted), most if short else min(most, ENOUGH)))
 
 
 def _is_caught(planted: Planted) -> bool:

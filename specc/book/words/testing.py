@@ -35,6 +35,9 @@ def _without(shown: Shown) -> tuple[Block, ...]:
 
 
 def _procedure(procedure: Procedure) -> Iterator[Block]:
+    if not procedure.drives:
+        yield Paragraph(f"There is none: {procedure.remarks[0]}.")
+        return
     found, count = procedure.rehearsal, len(procedure.drives)
     runs = "this run" if count == 1 else f"these {count} runs"
     decides = found is not None and found.decides

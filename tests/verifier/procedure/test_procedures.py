@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from runtime.arrays import Array
+from runtime.code import Code
 from runtime.program import Program
 from specc.loading import load_program
 from verifier.fidelity.together import verify_together
@@ -211,3 +212,12 @@ def test_what_is_left_to_drive_goes_where_nobody_was(wall: Program, procedure: P
     left = remaining_runs(needy, seen)
     assert left
     assert 0 not in left
+
+
+def test_a_behavior_that_leaves_its_domain_at_once_has_no_runs_and_says_so(wall: Program) -> None:
+    formula = (Code("1000"), Code("0"))
+    field = replace(wall.field, tables=(), terms=(), bounds=(), formula=formula)
+    found = procedure_of(replace(wall, field=field))
+    assert found.drives == ()
+    assert found.rehearsal is None
+    assert found.remarks[0].startswith("no run of the behavior alone lasts long enough")
