@@ -9,16 +9,17 @@ from lcs.arrays import Array
 from lcs.policies.decision_list import DecisionList, holds
 from lcs.rules.digits import shortest_between
 
-MARGIN: Final = 0.25
+MARGIN: Final = 0.05
 """Of a gap between two lived places, on either side of a bound in it."""
 
 
 def shortened(rules: DecisionList, x: Array) -> DecisionList:
     """The list with bounds of as few digits as leave each decision at places x (T, n) as it is.
 
-    One bound after the other is moved into the middle of the gap between the places on its two
-    sides that no earlier rule holds and that the rule's other bounds let in: 0.5 where all places
-    are 0 or 1. Without such a place beyond it, it is dropped.
+    One bound after the other is moved within the gap between the places on its two sides that no
+    earlier rule holds and that the rule's other bounds let in, to the number of fewest digits; of
+    several to the one in the middle, so 0.5 where all places are 0 or 1. Without such a place
+    beyond it, it is dropped.
     """
     made = dataclasses.replace(rules, lower=rules.lower.copy(), upper=rules.upper.copy())
     left = x
