@@ -77,7 +77,15 @@ def verify(
         from specc.cli.verify_book import verify_book
 
         return verify_book(
-            traces[0], traces[1:], spec, output, clock, form, strict=strict, allow_code=allow_code
+            traces[0],
+            traces[1:],
+            spec,
+            output,
+            clock,
+            form,
+            "verdict" if quick else "all" if output else "reasons",
+            strict=strict,
+            allow_code=allow_code,
         )
     given, traces = traces, [Path(each) for each in distinct(traces)]
     if len(traces) < len(given):

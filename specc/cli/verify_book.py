@@ -17,6 +17,7 @@ from specc.verifying.book_modules import BookVerdict, Standing
 from specc.verifying.book_record import book_record
 from specc.verifying.book_verdict import book_verdict
 from specc.verifying.trace import program_for_verify
+from verifier.report.examination import Depth
 
 
 def verify_book(
@@ -26,6 +27,7 @@ def verify_book(
     output: Sequence[Path],
     clock: Clock,
     form: ReportFormat,
+    depth: Depth,
     *,
     strict: bool,
     allow_code: bool,
@@ -44,7 +46,7 @@ def verify_book(
         clock.value,
         allow_code=allow_code,
         strict=strict,
-        depth="all" if output else "reasons",
+        depth=depth,
     )
     judge = partial(judge_each, book, traces, how)
     outcomes, is_interrupted = judged_with_bar(judge, len(traces))
