@@ -17,7 +17,7 @@ from specc.training.settings import Settings
 from tests.specc.training_scenes import FILES, SMALL, equal, written_in
 
 RESUME = ["train", "--resume", "-o", "out"]
-MORE = Settings(episodes=16, each=4, tried_in=3, rules=3, patience=9)
+MORE = Settings(episodes=12, each=3, tried_in=3, rules=3, patience=9)
 
 
 @pytest.fixture(autouse=True)
@@ -82,7 +82,7 @@ def test_an_arbiter_that_had_rules_is_judged_beside(capsys: pytest.CaptureFixtur
 
 
 def test_a_training_that_is_killed_and_resumed_learns_what_one_in_peace_does() -> None:
-    out, peace = begun(settings=MORE), begun("peace", settings=MORE)
+    out, peace = begun(settings=MORE, held_out=0), begun("peace", settings=MORE, held_out=0)
     command = [sys.executable, "-c", "from specc.cli import entry; entry()", *RESUME, "-j", "2"]
     run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     end = time.monotonic() + 120.0
