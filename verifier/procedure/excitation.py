@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from runtime.arrays import Array
-from runtime.program import Fidelity, Program
+from runtime.program import Fidelity, Kind, Program
 from verifier.fidelity.stretches.needs import names_read
 from verifier.procedure.driving import Plans, driven_paths
 from verifier.report.wording import number
@@ -36,7 +36,7 @@ def _effect(program: Program, fidelity: Fidelity, plans: Plans, every: float, pl
     values = plans.held[:, :, place]
     samples = max(round(fidelity.horizon / every), 1)
     ends = []
-    for end in np.linspace(values.min(), values.max(), PLACES):
+    for end in _places(program, place, values):
         held = plans.held[:, :1].copy()
         held[:, :, place] = end
         start = plans.start.copy()
@@ -47,6 +47,14 @@ def _effect(program: Program, fidelity: Fidelity, plans: Plans, every: float, pl
     apart = np.nan_to_num(np.max(ends, axis=0) - np.min(ends, axis=0), nan=0.0)
     found = [apart[:, program.register.index(n)] / t for n, t in fidelity.tolerance.items()]
     return np.asarray(np.max(found, axis=0))
+
+
+def _places(program: Program, place: int, values: Array) -> Array:
+    """The values that an input is held at for its effect; of a discrete one those it can have."""
+    state = program.states[place] if place < len(program.states) else None
+    if state is not None and state.kind is Kind.DISCRETE:
+        return np.unique(values)
+    return np.linspace(values.min(), values.max(), PLACES)
 
 
 def untold(effects: Mapping[str, Array]) -> tuple[str, ...]:

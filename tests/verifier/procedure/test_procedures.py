@@ -221,3 +221,12 @@ def test_a_behavior_that_leaves_its_domain_at_once_has_no_runs_and_says_so(wall:
     assert found.drives == ()
     assert found.rehearsal is None
     assert found.remarks[0].startswith("no run of the behavior alone lasts long enough")
+
+
+def test_a_bumper_is_held_at_what_it_can_say() -> None:
+    """Halfway between two names there is nothing."""
+    bumping = load_program(SPECS / "back_up_and_turn.yaml")
+    random_walk = load_program(SPECS / "move_at_random.yaml")
+
+    for program in (bumping, random_walk):
+        assert procedure_of(program, is_rehearsed=False).drives
