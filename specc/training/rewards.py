@@ -1,11 +1,15 @@
 """What decisions were worth: measures of what happened between them, and the reward."""
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
 from runtime.arrays import Array, Integers
-from runtime.machine import evaluate
+from runtime.code import Code
+from runtime.kernels.tape import Tape
+from runtime.machine import evaluate, run_tape
+from runtime.tape import pack
 from runtime.training import How, Training
 
 
@@ -13,7 +17,7 @@ def ended_at(training: Training, rows: Array) -> int:
     """The first of the rows (T, q) of the quantities at which the episode is over, or -1."""
     if training.ends_when is None or not len(rows):
         return -1
-    over = evaluate([training.ends_when], training.quantities, rows)[:, 0] >= 0.0
+    over = run_tape(_tape(training.ends_when, training.quantities), rows)[:, 0] >= 0.0
     return int(over.argmax()) if over.any() else -1
 
 
@@ -57,3 +61,9 @@ def measured(how: How, values: Array, decided: Integers) -> Array:
         case How.LEAST:
             return np.minimum.reduceat(since, starts)
     return np.add.reduceat(since, starts) / np.diff(decided)
+
+
+@cache
+def _tape(code: Code, names: tuple[str, ...]) -> Tape:
+    """The code, packed once: it is asked at each decision."""
+    return pack([code], names, ())
