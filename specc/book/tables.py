@@ -29,6 +29,8 @@ LARGEST: Final = 50_000
 """Nodes of a table at most."""
 FIRST: Final = 5
 """Nodes along an axis at first."""
+ROUNDS: Final = 24
+"""So often nodes are added at most."""
 PROBES: Final = 4000
 """Random places at which the error is measured."""
 NARROWEST: Final = 1e-4
@@ -188,9 +190,10 @@ def _sheet(reader: _Reader, quantity: str, setting: str, moving: frozenset[str])
     parts = reader.axes(moving)
     nodes: tuple[Array, ...] = tuple(map(_first_nodes, parts))
     values = _tabulated(reader, parts, nodes)
-    while (
-        finer := _finer(parts, nodes, values) or _finer_where_off(reader, parts, nodes, values)
-    ) is not None:
+    for _ in range(ROUNDS):
+        finer = _finer(parts, nodes, values) or _finer_where_off(reader, parts, nodes, values)
+        if finer is None:
+            break
         nodes, values = finer, _tabulated(reader, parts, finer)
     error, size = _measured(reader, parts, nodes, values)
     names = tuple(part.name for part in parts)
@@ -222,7 +225,8 @@ def _finer(
         if bends[k].max() <= allowed:
             return None
         finer = (*nodes[:k], _split(nodes[k], bends[k] > allowed), *nodes[k + 1 :])
-        if np.prod([len(own) for own in finer]) <= LARGEST:
+        is_more = len(finer[k]) > len(nodes[k])
+        if is_more and np.prod([len(own) for own in finer]) <= LARGEST:
             return finer
     return None
 

@@ -23,7 +23,7 @@ from specc.book.export import export_book
 from specc.book.loading import compile_book
 from specc.book.origins import files_named, renamed
 from specc.book.sources import Sources, sources_of
-from specc.book.tables import interpolated, sheets_of
+from specc.book.tables import LARGEST, interpolated, sheets_of
 from specc.book.views import views_at, views_of
 from specc.cli import main
 from tests.specc.book_scenes import ARCHITECTURE, FILES, SCENARIO, laid_down
@@ -442,3 +442,12 @@ def test_controls_that_do_not_change_the_field_make_no_portraits_more() -> None:
     settings = [manifest.Setting(f"{v}", (), {"speed": v, "wildness": 0.4}) for v in (0.1, 0.3)]
 
     assert len(views_at(wander, settings)) == 1
+
+
+def test_tables_of_fields_with_jumps_and_kinks_come_to_an_end() -> None:
+    specs = Path(__file__).parents[2] / "specs"
+    feel = loading.load_program(specs / "feel_wall.yaml")
+
+    for sheet in sheets_of(feel, "default", {}, ()):
+        assert sheet.values.size <= LARGEST
+        assert np.isfinite(sheet.values).all()
