@@ -31,7 +31,7 @@ def data_section(of: Drawn, shown: Shown, names: Names) -> Section:
         Paragraph(
             "A discrete state is given as its index (0 for the first of its values). How far a"
             f" table is off was measured at {PROBES} random places; the share is of the largest"
-            " value seen there. Beside a jump of the field a table is off by up to the jump's height,"
+            " value seen there. Beside a jump of the field a table is off by up to its height,"
             " within one interval of its nodes: there the formulas count.",
             is_small=True,
         ),
