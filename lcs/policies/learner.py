@@ -61,16 +61,15 @@ class Voting:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Found:
-    """Few rules, and all those that they were chosen from.
+    """Lists of few rules, and all the rules that they were chosen from.
 
-    loses: what the few lose a decision against the best action at each place, by what actions are
-    worth; at_stake: what the best action loses less than the worst, in the middle of all places.
+    lists: for each action the list that takes it where no rule holds. Which is best is not told by
+    what single decisions lose: an action that is nearly as good as the best, once, may lead to
+    nothing if it is always taken. It takes a trial.
     """
 
-    rules: DecisionList
-    votes: Voting
-    loses: float
-    at_stake: float
+    lists: tuple[DecisionList, ...]
+    table: RuleTable
 
 
 def found_policy(
@@ -99,16 +98,18 @@ def found_policy(
     """
     worth = worth_of(lived, actions, discount, seed)
     cost = worth.max(axis=1, keepdims=True) - worth
-    at_stake = float(np.median(cost.max(axis=1)))
-    tolerance = EQUAL * at_stake
+    tolerance = EQUAL * float(np.median(cost.max(axis=1)))
     x = np.clip(lived.x, *ranges)
     order = np.random.default_rng([seed, len(x)]).permutation(len(x))
     made = LEARNERS[learner](actions, *ranges, seed)
     made.teach(x[order], np.where(cost <= tolerance, GOOD, WORSE)[order])
     table = made.rules()
-    rules = listed(offer_of(table), x, cost, tolerance=tolerance, most=most)
-    loses = float(cost[np.arange(len(x)), rules.decide(x)].mean())
-    return Found(rules, Voting(table, rules.otherwise), loses, at_stake)
+    offer = offer_of(table)
+    lists = (
+        listed(offer, x, cost, otherwise, tolerance=tolerance, most=most)
+        for otherwise in range(actions)
+    )
+    return Found(tuple(lists), table)
 
 
 def offer_of(table: RuleTable) -> Offer:

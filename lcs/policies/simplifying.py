@@ -26,6 +26,7 @@ class Draft:
     action: Integers
     lower: Array
     upper: Array
+    otherwise: int
 
     def first(self, x: Array) -> Integers:
         """Which rule is the first to hold at x (T, n); R where none does."""
@@ -34,20 +35,15 @@ class Draft:
         found: Integers = held.argmax(axis=0)
         return found
 
-    def otherwise(self, first: Integers, cost: Array) -> int:
-        """The best action where no rule holds."""
-        return int(cost[first == len(self.action)].sum(axis=0).argmin())
-
     def loses(self, x: Array, cost: Array) -> float:
         """What the list loses on examples (T, n) of cost (T, A)."""
-        first = self.first(x)
-        taken = np.append(self.action, self.otherwise(first, cost))[first]
+        taken = np.append(self.action, self.otherwise)[self.first(x)]
         return float(cost[np.arange(len(x)), taken].sum())
 
     def without(self, rule: int) -> "Draft":
         """The list without one of its rules."""
         kept = np.arange(len(self.action)) != rule
-        return Draft(self.action[kept], self.lower[kept], self.upper[kept])
+        return Draft(self.action[kept], self.lower[kept], self.upper[kept], self.otherwise)
 
     def with_bound(self, rule: int, i: int, side: str, value: float) -> "Draft":
         """The list with another `lower` or `upper` bound of a rule in input i."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from lcs.arrays import Array
 from lcs.given import inputs_of
+from lcs.policies.held import held
 from lcs.policies.kernels.fitting import Lived, Numbers, fitted
 from lcs.policies.steps import Steps
 
@@ -18,6 +19,8 @@ FED: Final = 10
 """Steps in a leaf, at least."""
 GENERATIONS: Final = 4
 """How often trees grow, each time for what those before expected."""
+LONGEST: Final = 8
+"""A choice is taken for what it brings while it is held, for so many decisions at most."""
 
 
 def worth_of(lived: Steps, actions: int, discount: float, seed: int) -> Array:
@@ -28,11 +31,10 @@ def worth_of(lived: Steps, actions: int, discount: float, seed: int) -> Array:
     Raises:
         LearnerError: something is not finite.
     """
-    n = lived.x.shape[1]
-    steps = Lived(
-        inputs_of(lived.x, n), lived.action, lived.reward, inputs_of(lived.after, n), lived.ends
-    )
-    numbers = Numbers(actions, FAMILIES, FED, GENERATIONS, discount)
+    n, longer = lived.x.shape[1], held(lived, discount, LONGEST)
+    x, after = inputs_of(lived.x, n), inputs_of(longer.after, n)
+    steps = Lived(x, lived.action, longer.reward, after, longer.ends, longer.discount)
+    numbers = Numbers(actions, FAMILIES, FED, GENERATIONS)
     worth = fitted(steps, numbers, np.random.default_rng(seed)).T
     known = np.isfinite(worth)
     return np.where(known, worth, worth[known].min(initial=np.inf))

@@ -116,13 +116,8 @@ def _failures(trained: Trained) -> list[str]:
 
 
 def _compaction_record(trained: Trained) -> dict[str, Any]:
-    found = trained.found
-    record: dict[str, Any] = {
-        "rules_before": len(found.votes.table),
-        "rules": len(found.rules),
-        "loses_by_decision": found.loses,
-        "at_stake_by_decision": found.at_stake,
-    }
+    before, after = len(trained.table), len(trained.course.best.rules)
+    record: dict[str, Any] = {"rules_before": before, "rules": after}
     if trained.judged:
         few, votes = trained.judged[0].trial, trained.judged[1].trial
         record["reward_lost"] = votes.reward - few.reward

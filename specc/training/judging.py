@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Array, Integers
-from lcs.policies.learner import Found
+from lcs.policies.decision_list import DecisionList
+from lcs.policies.learner import Voting
 from lcs.policies.policy import Policy
+from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.machine import evaluate
 from specc.training.training import AtRandom, Progress, Trial, live_through, trial_of, trial_tasks
@@ -58,14 +60,19 @@ class AsItWas:
 
 
 def judged(
-    found: Found, arbiter: Arbiter, worlds: int, workers: Workers, tell: Progress
+    learnt: tuple[DecisionList, RuleTable],
+    arbiter: Arbiter,
+    worlds: int,
+    workers: Workers,
+    tell: Progress,
 ) -> tuple[Judged, ...]:
     """What was learnt, the same before compaction, the arbiter as it was, and chance.
 
-    arbiter: before training. worlds: how many, the same for all.
+    learnt: the list, and all rules that it was chosen from. arbiter: before training. worlds: how
+    many, the same for all.
     """
     done: list[Judged] = []
-    beside = list(_beside(found, arbiter))
+    beside = list(_beside(*learnt, arbiter))
     total = len(beside) * worlds
     for what, rules, policy, explore in beside:
 
@@ -89,10 +96,12 @@ def interval(success: float, worlds: int) -> tuple[float, float]:
     return found.low, found.high
 
 
-def _beside(found: Found, arbiter: Arbiter) -> Iterator[tuple[str, int | None, Policy, float]]:
+def _beside(
+    rules: DecisionList, table: RuleTable, arbiter: Arbiter
+) -> Iterator[tuple[str, int | None, Policy, float]]:
     """What is judged: its name, how many rules it has, its policy, and how much it tries."""
-    yield "what was learnt", len(found.rules), found.rules, 0.0
-    yield "all rules, by their vote", len(found.votes.table), found.votes, 0.0
+    yield "what was learnt", len(rules), rules, 0.0
+    yield "all rules, by their vote", len(table), Voting(table, rules.otherwise), 0.0
     if len(arbiter.rules) > 1:  # the last one always holds
         yield "the arbiter as it was", len(arbiter.rules) - 1, AsItWas(arbiter), 0.0
     yield "choices at random", None, AtRandom(), 1.0

@@ -8,7 +8,7 @@ from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.library import Library
 from compiler.findings import Findings
 from lcs.policies.decision_list import always
-from lcs.policies.learner import Found
+from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.scenario import Scenario
 from spec_schema.arbiter import ArbiterSpec
@@ -35,8 +35,9 @@ class Trained:
     """What came of a training.
 
     scenario: as it was begun with. source, edited: the arbiter's text, and that with its rules.
-    arbiter: compiled from the latter; warnings: on the way. course: all generations. found: what
-    was learnt at the best of them. judged: that beside others, where any worlds were held out.
+    arbiter: compiled from the latter; warnings: on the way. course: all generations. table: all
+    rules that those of the best were chosen from. judged: these beside others, where any worlds
+    were held out.
     """
 
     begun: Begun
@@ -46,7 +47,7 @@ class Trained:
     arbiter: Arbiter
     warnings: tuple[Diagnostic, ...]
     course: Course
-    found: Found
+    table: RuleTable
     judged: tuple[Judged, ...]
     pace: Pace
     jobs: int
@@ -71,13 +72,13 @@ def concluded(
         tell: is told what is done, how much of it, and of how much.
     """
     tell("learning once more what was best", 0, 1)
-    found = best_found(course, scenario, begun)
+    rules, table = course.best.rules, best_table(course, scenario, begun)
     before = trained_arbiter(scenario)
-    beside = judged(found, before, begun.held_out, workers, tell) if begun.held_out else ()
-    edited = with_rules(loaded, before, begun.settings.learner, found.rules)
+    beside = judged((rules, table), before, begun.held_out, workers, tell) if begun.held_out else ()
+    edited = with_rules(loaded, before, begun.settings.learner, rules)
     arbiter, warnings = _compiled(edited)
     tell("measuring the pace", 0, 1)
-    pace = paced(scenario, Task(world(For.CHOOSING, 0), found.rules, 0.0))
+    pace = paced(scenario, Task(world(For.CHOOSING, 0), rules, 0.0))
     return Trained(
         begun=begun,
         scenario=scenario,
@@ -86,18 +87,18 @@ def concluded(
         arbiter=arbiter,
         warnings=warnings,
         course=course,
-        found=found,
+        table=table,
         judged=beside,
         pace=pace,
         jobs=workers.processes,
     )
 
 
-def best_found(course: Course, scenario: Scenario, begun: Begun) -> Found:
-    """The best policy with all the rules that its own were chosen from: these are not kept."""
+def best_table(course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
+    """All rules that those of the best policy were chosen from, learnt again: they are not kept."""
     best = course.best
     number = course.generations.index(best)
-    return policy_of(course.lived[: best.episodes], scenario, begun.settings, number)
+    return policy_of(course.lived[: best.episodes], scenario, begun.settings, number).table
 
 
 def text_of(scenario: Scenario, learner: str) -> Loaded:

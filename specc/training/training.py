@@ -25,6 +25,9 @@ EXPLORING: Final = "exploring"
 AGAIN: Final = 2
 """What sets the chance of which worlds are explored again apart from other chance."""
 
+FIRST: Final = 10
+"""Worlds in which all lists of a generation are tried; the best of them is tried in all."""
+
 Progress: TypeAlias = Callable[[str, int, int], None]
 
 
@@ -149,8 +152,7 @@ def _generation(
     lived = [*course.lived, *(episode.steps for episode in episodes)]
     found = policy_of(lived, scenario, settings, len(course.generations))
     clock.append(perf_counter())
-    tries = trial_tasks(found.rules, settings.tried_in, For.CHOOSING)
-    tried = live_through(workers, tries, "trying", told)
+    rules, tried = _best_of(found.lists, settings.tried_in, workers, told)
     clock.append(perf_counter())
     course.lived = lived
     return Generation(
@@ -159,9 +161,22 @@ def _generation(
         explored=trial_of(episodes),
         tried=trial_of(tried),
         failed=tuple(i for i, each in enumerate(tried) if not each.succeeded),
-        rules=found.rules,
+        rules=rules,
         took=Took(*np.diff(clock).tolist()),
     )
+
+
+def _best_of(
+    lists: Sequence[DecisionList], worlds: int, workers: Workers, tell: Progress
+) -> tuple[DecisionList, list[Episode]]:
+    """The list that does best in the first few of the worlds, and how it does in all of them."""
+    few = min(FIRST, worlds)
+    tasks = [task for rules in lists for task in trial_tasks(rules, few, For.CHOOSING)]
+    episodes = live_through(workers, tasks, "trying all lists", tell)
+    each = [episodes[i * few : (i + 1) * few] for i in range(len(lists))]
+    best = max(range(len(lists)), key=lambda i: trial_of(each[i]).reward)
+    more = trial_tasks(lists[best], worlds, For.CHOOSING)[few:]
+    return lists[best], [*each[best], *live_through(workers, more, "trying the best", tell)]
 
 
 def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
@@ -182,7 +197,7 @@ def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
 def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, number: int) -> Found:
     """What is learnt from all steps so far, in the generation of that number.
 
-    Its rules have bounds of few digits, and decide on these steps as those that were learnt.
+    Rules have bounds of few digits, and decide on these steps as those that were learnt.
     """
     arbiter, steps = trained_arbiter(scenario), joined(lived)
     found = found_policy(
@@ -194,7 +209,7 @@ def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, nu
         seed=settings.seed + number,
         most=settings.rules,
     )
-    return replace(found, rules=shortened(found.rules, steps.x))
+    return replace(found, lists=tuple(shortened(rules, steps.x) for rules in found.lists))
 
 
 def ranges_of(arbiter: Arbiter) -> tuple[Array, Array]:

@@ -15,13 +15,17 @@ NEAR = 1e-4
 
 
 class Lived(NamedTuple):
-    """N steps of all episodes; see `lcs.policies.steps.Steps`."""
+    """N steps of all episodes; see `lcs.policies.steps.Steps`.
+
+    discount (N,): what a reward right after each is worth.
+    """
 
     x: Array
     action: Integers
     reward: Array
     after: Array
     ends: Booleans
+    discount: Array
 
 
 class Numbers(NamedTuple):
@@ -34,11 +38,10 @@ class Numbers(NamedTuple):
     families: int
     fed: int
     generations: int
-    discount: float
 
 
 @part
-def value(lived: Lived, discount: float, then: Array, target: Array) -> None:
+def value(lived: Lived, then: Array, target: Array) -> None:
     """What each step led to: its reward, and the best of what is expected after it, (A, N)."""
     for k in range(target.size):
         target[k] = lived.reward[k]
@@ -46,7 +49,7 @@ def value(lived: Lived, discount: float, then: Array, target: Array) -> None:
             best = -np.inf
             for a in range(len(then)):
                 best = max(best, then[a, k])
-            target[k] += discount * best
+            target[k] += lived.discount[k] * best
 
 
 @part
@@ -101,7 +104,6 @@ def grow_all(
 @part
 def settle(
     lived: Lived,
-    discount: float,
     target: Array,
     leaves: tuple[Integers, Integers],
     expected: Array,
@@ -120,7 +122,7 @@ def settle(
             if own.size:
                 change = max(change, digest(own, here[a], target, expected[a]))
                 means(there[a], expected[a], then[a])
-        value(lived, discount, then, target)
+        value(lived, then, target)
         if change <= NEAR * (target.max() - target.min()):
             return
 
@@ -138,7 +140,7 @@ def fitted(lived: Lived, numbers: Numbers, chance: np.random.Generator) -> Array
     leaves = here, np.zeros_like(here)
     for _ in range(numbers.generations):
         grow_all(lived, numbers, target, leaves, chance)
-        settle(lived, numbers.discount, target, leaves, expected)
+        settle(lived, target, leaves, expected)
     for a in range(numbers.actions):
         if (lived.action == a).any():
             means(here[a], expected[a], worth[a])

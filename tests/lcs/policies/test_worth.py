@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from lcs.policies.learner import LEARNERS, found_policy
+from lcs.policies.held import held
+from lcs.policies.learner import LEARNERS, Voting, found_policy
 from lcs.policies.steps import Steps, joined
 from lcs.policies.worth import worth_of
 
@@ -55,9 +56,11 @@ def test_rules_for_the_corridor_go_to_the_right(learner: str) -> None:
     ranges = np.zeros(2), np.array([float(CELLS), 1.0])
     found = found_policy(lived, ranges, 2, discount=DISCOUNT, learner=learner, seed=0)
     again = found_policy(lived, ranges, 2, discount=DISCOUNT, learner=learner, seed=0)
-    assert found.rules.decide(lived.x).mean() > 0.98
-    assert again.rules.lower.tobytes() == found.rules.lower.tobytes()
-    assert found.votes.decide(lived.x).mean() > 0.95
+    assert [rules.otherwise for rules in found.lists] == [0, 1]
+    for rules, same in zip(found.lists, again.lists, strict=True):
+        assert rules.decide(lived.x).mean() > 0.98
+        assert same.lower.tobytes() == rules.lower.tobytes()
+    assert Voting(found.table, 0).decide(lived.x).mean() > 0.95
 
 
 def test_steps_of_episodes_are_joined_in_their_order() -> None:
@@ -65,3 +68,15 @@ def test_steps_of_episodes_are_joined_in_their_order() -> None:
     whole = joined(parts)
     assert len(whole) == 7
     assert whole.action.tolist() == [*parts[0].action.tolist(), *parts[1].action.tolist()]
+
+
+def test_a_held_choice_is_worth_all_that_it_brings_and_what_comes_after() -> None:
+    x = np.arange(6.0)[:, None]
+    action, reward = np.array([1, 1, 1, 0, 0, 0]), np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
+    ends = np.array([False, False, False, False, True, False])
+    after = np.append(x[1:], [[9.0]], axis=0)
+    longer = held(Steps(x, action, reward, after, ends), 0.5, 2)
+    assert longer.reward.tolist() == [2.0, 4.0, 4.0, 16.0, 16.0, 32.0]
+    assert longer.after[:, 0].tolist() == [2.0, 3.0, 3.0, 5.0, 5.0, 9.0]
+    assert longer.discount.tolist() == [0.25, 0.25, 0.5, 0.25, 0.5, 0.5]
+    assert longer.ends.tolist() == [False, False, False, True, True, False]
