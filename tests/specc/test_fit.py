@@ -16,10 +16,11 @@ import specc
 from runtime.artifact import to_bytes
 from spec_schema.diagnostics import SpecError
 from spec_schema.source import Source
+from specc.files import BOM
 from specc.fitting import cases
 from specc.fitting.aims import Aim, Aims, UnitAim
 from specc.fitting.compiling import compiled
-from specc.fitting.fitted import BOM, Outcome
+from specc.fitting.fitted import Outcome
 from specc.fitting.moves import _is_same, moved
 from specc.fitting.own_text import own_text
 from specc.fitting.pooling import pooled
