@@ -48,17 +48,21 @@ class DecisionList:
         Raises:
             LearnerError: not n finite numbers each.
         """
-        x = inputs_of(inputs, self.lower.shape[1])
-        held = np.ones((len(self) + 1, len(x)), np.bool_)
-        held[: len(self)] = holds(self.lower, self.upper, x)
-        found: Integers = held.argmax(axis=0)
-        return found
+        return first_to_hold(self.lower, self.upper, inputs_of(inputs, self.lower.shape[1]))
 
 
 def always(action: int, inputs: int) -> DecisionList:
     """The list without rules."""
     none, no_bounds = np.zeros(0, np.int64), np.zeros((0, inputs))
     return DecisionList(none, no_bounds, no_bounds, none, none, action)
+
+
+def first_to_hold(lower: Array, upper: Array, x: Array) -> Integers:
+    """Which of R boxes (R, n) is the first to hold each of the inputs (T, n); R where none does."""
+    held = np.ones((len(lower) + 1, len(x)), np.bool_)
+    held[:-1] = holds(lower, upper, x)
+    found: Integers = held.argmax(axis=0)
+    return found
 
 
 def holds(lower: Array, upper: Array, x: Array) -> Booleans:

@@ -7,7 +7,7 @@ from typing import Final, final
 import numpy as np
 
 from lcs.arrays import Array, Integers
-from lcs.policies.decision_list import holds
+from lcs.policies.decision_list import first_to_hold
 
 OF_A_RULE: Final = 0.2
 """A condition saves at least this share of what a rule has to save."""
@@ -30,10 +30,7 @@ class Draft:
 
     def first(self, x: Array) -> Integers:
         """Which rule is the first to hold at x (T, n); R where none does."""
-        held = np.ones((len(self.action) + 1, len(x)), np.bool_)
-        held[:-1] = holds(self.lower, self.upper, x)
-        found: Integers = held.argmax(axis=0)
-        return found
+        return first_to_hold(self.lower, self.upper, x)
 
     def loses(self, x: Array, cost: Array) -> float:
         """What the list loses on examples (T, n) of cost (T, A)."""

@@ -106,36 +106,27 @@ def _read(read: Read) -> Quantity:
 
 
 def _control(control: Control) -> Quantity:
-    return Quantity(
-        name=control.name,
-        kind="continuous",
-        role="",
-        unit=control.unit.text,
-        scale=control.unit.scale,
-        low=control.low,
-        high=control.high,
-        default=control.default,
-        values=(),
-        agent="",
-        environment="",
-        about=control.about,
-    )
+    return _number(control, control.low, control.high, control.default)
 
 
 def _output(output: Output) -> Quantity:
+    return _number(output, 0.0, 0.0, 0.0)
+
+
+def _number(part: Control | Output, low: float, high: float, default: float) -> Quantity:
     return Quantity(
-        name=output.name,
+        name=part.name,
         kind="continuous",
         role="",
-        unit=output.unit.text,
-        scale=output.unit.scale,
-        low=0.0,
-        high=0.0,
-        default=0.0,
+        unit=part.unit.text,
+        scale=part.unit.scale,
+        low=low,
+        high=high,
+        default=default,
         values=(),
         agent="",
         environment="",
-        about=output.about,
+        about=part.about,
     )
 
 

@@ -21,6 +21,7 @@ from specc.book.formulas import labels_of, plain, written
 from specc.book.naming import Names
 from specc.book.words.acting import timing_sentences
 from specc.book.words.behavior import HOW_TO_READ, PORTRAIT, mode_ways
+from specc.book.words.declared import constants_table, controls_table
 from specc.book.words.quantities import NOTHING, exact, listed, milliseconds, range_of
 from specc.book.words.source import author_words, spec_section
 from specc.book.words.testing import bench_section
@@ -96,23 +97,10 @@ def _reads(arbiter: Arbiter, made: Architecture, node: Node, names: Names) -> It
     )
     yield Table(("reads", "range", "comes from", "what it is"), rows)
     if arbiter.controls:
-        controls = tuple(
-            (
-                f"`{c.name}`",
-                range_of(c),
-                exact(c.default, c.unit),
-                source_of(made, node, c, names),
-                c.about or NOTHING,
-            )
-            for c in arbiter.controls
-        )
         yield Paragraph("Its control parameters are set from outside, each by itself.")
-        yield Table(("control", "range", "default", "set here to", "what it does"), controls)
+        yield controls_table(arbiter.controls, made, node, names)
     if arbiter.constants:
-        constants = tuple(
-            (f"`{c.name}`", exact(c.value, c.unit), c.about or NOTHING) for c in arbiter.constants
-        )
-        yield Table(("constant", "value", "what it is"), constants)
+        yield constants_table(arbiter.constants)
     if arbiter.outputs:
         labels = labels_of(arbiter)
         yield Paragraph("What it tells beside its choice:")

@@ -21,6 +21,7 @@ from specc.book.naming import Names
 from specc.book.tables import per_second
 from specc.book.words.acting import acting_section, timing_sentences
 from specc.book.words.data import data_section
+from specc.book.words.declared import constants_table, controls_table
 from specc.book.words.faithful import faithful_section
 from specc.book.words.quantities import NOTHING, SECOND, exact, range_of, unit_of
 from specc.book.words.source import author_words, conditions_of, formulas_of, spec_section
@@ -120,24 +121,11 @@ def _kept(state: State, program: Program) -> str:
 
 def _controls(program: Program, made: Architecture, node: Node, names: Names) -> Iterator[Block]:
     if program.controls:
-        rows = tuple(
-            (
-                f"`{control.name}`",
-                range_of(control),
-                exact(control.default, control.unit),
-                source_of(made, node, control, names),
-                control.about or NOTHING,
-            )
-            for control in program.controls
-        )
         yield Paragraph("Control parameters are set from outside, each by itself.")
-        yield Table(("control", "range", "default", "set here to", "what it does"), rows)
+        yield controls_table(program.controls, made, node, names)
     if program.constants:
-        constants = tuple(
-            (f"`{c.name}`", exact(c.value, c.unit), c.about or NOTHING) for c in program.constants
-        )
         yield Paragraph("Constants are part of the behavior; nobody sets them.")
-        yield Table(("constant", "value", "what it is"), constants)
+        yield constants_table(program.constants)
     if program.outputs:
         labels = labels_of(program)
         yield Paragraph("Outputs are what others may read of it, or what it asks of the body.")
