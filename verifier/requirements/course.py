@@ -33,18 +33,21 @@ class Course:
 
     def values_at(self, times: Array) -> tuple[Array, Array]:
         """The limits from the left and from the right at `times`, none before the first."""
-        left = self._in_pieces(np.searchsorted(self.times, times, "left") - 1, times)
-        right = self._in_pieces(np.searchsorted(self.times, times, "right") - 1, times)
+        if np.array_equal(times, self.times):
+            return self.before, self.after
+        piece = np.searchsorted(self.times, times, "right") - 1
+        right = self.after[piece]
+        is_here = self.times[piece] == times
+        left = np.where(is_here, self.before[piece], right)
+        inside = np.flatnonzero(~is_here & (piece < self.times.size - 1))
+        left[inside] = right[inside] = self._in_pieces(piece[inside], times[inside])
         return left, right
 
-    def _in_pieces(self, found: Integers, times: Array) -> Array:
-        piece = np.maximum(found, 0)
-        last = self.times.size - 1
-        then = np.minimum(piece + 1, last)
-        width = np.where(piece < last, self.times[then] - self.times[piece], 1.0)
-        share = np.clip((times - self.times[piece]) / width, 0.0, 1.0)
-        end = np.where(piece < last, self.before[then], self.after[piece])
-        start = self.after[piece]
+    def _in_pieces(self, piece: Integers, times: Array) -> Array:
+        """The values at `times` inside of pieces, of which none is the last."""
+        begin = self.times[piece]
+        share = (times - begin) / (self.times[piece + 1] - begin)
+        start, end = self.after[piece], self.before[piece + 1]
         # Where both ends are one, rounding must not make them two.
         values: Array = np.where(start == end, start, start * (1.0 - share) + end * share)
         return values
