@@ -181,11 +181,10 @@ def _held(touches: list[Touch], first: int) -> dict[int, tuple[float, int]]:
 
 def _cause(looks: deque[_Look], grip: float, seconds: float) -> Cause | None:
     """Why a robot is stuck by its last looks, which are `seconds` apart; None where it is not."""
-    if min(look.force for look in looks) > ABOVE * grip:
+    if all(look.force > ABOVE * grip for look in looks):
         return Cause.WEDGED
     wanted = [sum(look.commanded[k] for look in looks) * seconds for k in range(2)]
-    done = [sum(look.done[k] for look in looks) for k in range(2)]
     asked = [k for k, least in enumerate((TRAVEL, TURN)) if wanted[k] >= least]
-    if asked and all(done[k] < SHARE * wanted[k] for k in asked):
+    if asked and all(sum(look.done[k] for look in looks) < SHARE * wanted[k] for k in asked):
         return Cause.STALLED
     return None
