@@ -57,12 +57,10 @@ class Live:
         self._begun, self._ticks, self._scenario = begun, ticks, scenario
         self._robots = [robot.name for robot in scenario.robots]
         self._owners = [*(thing.name for thing in begun.world.layout.things), *self._robots]
-        self._poses = begun.world.poses()
         self._reads = [self._read(name) for name in names]
 
     def now(self) -> list[float]:
         """Their values, in SI."""
-        self._poses = self._begun.world.poses()
         return [read() for _, read in self._reads]
 
     def sampled(self, times: Array, values: Array) -> dict[str, Quantity]:
@@ -76,7 +74,7 @@ class Live:
             place, column = self._owners.index(owner), [*OF_POSE].index(what)
             kind = Kind.PERIODIC if what == "heading" else Kind.CONTINUOUS
             about = measured(name, OF_POSE[what], NONE, NONE, kind)
-            return about, lambda: float(self._poses[place, column])
+            return about, lambda: self._begun.world.pose(place)[column]
         if owner not in self._robots:
             raise KeyError(name)
         found = self._of_robot(name, self._robots.index(owner), what)

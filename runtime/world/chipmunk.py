@@ -33,28 +33,24 @@ def stepper(space: pymunk.Space) -> Callable[[float], None]:
 
 def aimer(body: pymunk.Body) -> Callable[[float, float], None]:
     """What sets the velocity of a kinematic body to (x, y); one that may sleep must be woken."""
-    numbers = _numbers(body)
+    velocity = _numbers(body)[memory.VELOCITY :]
 
     def aim(x: float, y: float) -> None:
-        numbers[memory.VELOCITY], numbers[memory.VELOCITY + 1] = x, y
+        velocity[0], velocity[1] = x, y
 
     return aim
 
 
 def compass(body: pymunk.Body) -> Callable[[float], float]:
     """What tells the heading at which a body will be in so many seconds, as it turns now."""
-    numbers = _numbers(body)
-    return lambda seconds: numbers[memory.HEADING] + numbers[memory.TURN] * seconds
+    numbers, heading, turn = _numbers(body), memory.HEADING, memory.TURN
+    return lambda seconds: numbers[heading] + numbers[turn] * seconds
 
 
 def finder(body: pymunk.Body) -> Callable[[], tuple[float, float, float]]:
     """What tells where the origin of a body is, and its heading."""
-    numbers = _numbers(body)
-    return lambda: (
-        numbers[memory.PLACE],
-        numbers[memory.PLACE + 1],
-        numbers[memory.HEADING],
-    )
+    numbers, x, y, heading = _numbers(body), memory.PLACE, memory.PLACE + 1, memory.HEADING
+    return lambda: (numbers[x], numbers[y], numbers[heading])
 
 
 def feel_evenly(body: pymunk.Body) -> None:

@@ -8,7 +8,7 @@ through anything; a robot that were moved directly would have endless force.
 
 import math
 from collections.abc import Sequence
-from typing import Final, final
+from typing import Final, NamedTuple, final
 
 import pymunk
 
@@ -26,6 +26,18 @@ CHANNELS: Final = {
 """What can be commanded."""
 
 
+@final
+class Motion(NamedTuple):
+    """How a body moves: the velocity of its origin in its own frame (m/s), and its turn (rad/s)."""
+
+    forward: float
+    left: float
+    turn: float
+
+
+STILL: Final = Motion(0.0, 0.0, 0.0)
+
+
 def drive_of(space: pymunk.Space, solid: pymunk.Body, body: Body, spread: Spread) -> "Motor":
     """The drive of a robot's body, with its ghosts in the space."""
     if body.drive.kind is DriveKind.DIFFERENTIAL:
@@ -38,31 +50,28 @@ class Ramps:
     """Set-points that change no faster than a drive can.
 
     Attributes:
-        now: forward, left (m/s) and turn (rad/s) that the motors hold.
+        now: what the motors hold.
+        is_free: whether nothing drives the body at all.
     """
 
     def __init__(self, drive: Drive) -> None:
-        self.now = (0.0, 0.0, 0.0)
-        self._goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
+        self.now = self._goal = STILL
         self._driven = (True, True, True)
+        self._all_driven, self.is_free = True, False
         self._drive = drive
-
-    @property
-    def is_free(self) -> bool:
-        """Whether nothing drives the body at all."""
-        return not any(self._driven)
 
     def set(self, goal: Sequence[float | None]) -> None:
         """Head for `goal`: forward, left, turn; None for what rolls freely."""
         forward, left, turn = goal
         self._driven = (forward is not None, left is not None, turn is not None)
-        self._goal = (forward or 0.0, left or 0.0, turn or 0.0)
+        self._all_driven, self.is_free = all(self._driven), not any(self._driven)
+        self._goal = Motion(forward or 0.0, left or 0.0, turn or 0.0)
 
     def advance(self, solid: pymunk.Body, centre: tuple[float, float], seconds: float) -> None:
         """Let the motors come nearer to the goal; what rolls freely is as fast as the body is."""
-        if self.now == self._goal and all(self._driven):
+        if self._all_driven and self.now == self._goal:
             return
-        measured = self.now if all(self._driven) else local_velocity(solid, centre)
+        measured = self.now if self._all_driven else local_velocity(solid, centre)
         forward, left, turn = (
             goal if driven else is_now
             for goal, driven, is_now in zip(self._goal, self._driven, measured, strict=True)
@@ -78,7 +87,7 @@ class Ramps:
             left = was[1] + (left - was[1]) * most / change
         most = self._drive.spin * seconds
         turn = min(max(turn, was[2] - most), was[2] + most)
-        self.now = (forward, left, turn)
+        self.now = Motion(forward, left, turn)
 
 
 @final
@@ -186,14 +195,14 @@ class Holonomic:
 Motor = Differential | Holonomic
 
 
-def local_velocity(solid: pymunk.Body, centre: tuple[float, float]) -> tuple[float, float, float]:
-    """How the origin of a body moves, in its own frame: forward, left (m/s), turn (rad/s)."""
+def local_velocity(solid: pymunk.Body, centre: tuple[float, float]) -> Motion:
+    """How a body moves whose centre of mass is there, seen from its origin."""
     heading, turn = solid.angle, solid.angular_velocity
     u, v = solid.velocity
     cosine, sine = math.cos(heading), math.sin(heading)
     forward = cosine * u + sine * v + turn * centre[1]
     left = cosine * v - sine * u - turn * centre[0]
-    return forward, left, turn
+    return Motion(forward, left, turn)
 
 
 def _ghost(

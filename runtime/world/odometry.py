@@ -24,6 +24,7 @@ class Odometry:
         self._scales = (1.0 + sensor.slip * chance.standard_normal(3)).tolist()
         self._place = (0.0, 0.0, 0.0)
         self._motion = (0.0, 0.0, 0.0)
+        self._driven: tuple[float, float, float] | None = None
 
     def advance(self, driven: tuple[float, float, float], seconds: float) -> None:
         """Add a step at the end of which the wheels turn as for `driven`: forward, left, turn.
@@ -42,7 +43,8 @@ class Odometry:
             y + forward * sine + left * cosine,
             math.remainder(heading + 2.0 * half, math.tau),
         )
-        self._motion = self._believed(driven)
+        if driven is not self._driven:  # a motor that holds its speed says the same
+            self._driven, self._motion = driven, self._believed(driven)
 
     def read(self) -> tuple[float, ...]:
         """The readings x, y, heading, speed, turn."""

@@ -13,6 +13,7 @@ import numpy as np
 from runtime.arrays import Array
 from runtime.chance import generator
 from runtime.direct_calls import machine_code
+from runtime.world.drive import Motion
 from runtime.world.geometry import Geometry
 from runtime.world.kernels.rays import nearest_hit, nearest_seen
 from runtime.world.kernels.shade import illuminance
@@ -20,7 +21,7 @@ from runtime.world.light import ANYWHERE, LightMap, Sources
 from runtime.world.model import Body, DriveKind, Light, Sensor, SensorKind
 from runtime.world.odometry import Odometry
 from runtime.world.rays import View, half_cosine, parts_of, spread
-from runtime.world.world import Contact, Motion, SimulatedWorld
+from runtime.world.world import Contact, SimulatedWorld
 
 
 class Surroundings(Protocol):

@@ -17,7 +17,7 @@ from runtime.arrays import Array, Booleans
 from runtime.direct_calls import machine_code
 from runtime.world.audit import Audit, Auditor
 from runtime.world.chipmunk import finder
-from runtime.world.drive import CHANNELS, Motor, drive_of, local_velocity
+from runtime.world.drive import CHANNELS, Motion, Motor, drive_of, local_velocity
 from runtime.world.floor import FEET, Feet, feet_of, stand
 from runtime.world.footprint import spread
 from runtime.world.geometry import Geometry, Outline, Plan
@@ -63,15 +63,6 @@ class Contact(NamedTuple):
     x: float
     y: float
     bearing: float
-
-
-@final
-class Motion(NamedTuple):
-    """How a body moves: the velocity of its origin in its own frame (m/s), and its turn (rad/s)."""
-
-    forward: float
-    left: float
-    turn: float
 
 
 class Senses(Protocol):
@@ -137,7 +128,7 @@ class SimulatedWorld:
             (motor.ramps, _arm(robot.body))
             for motor, robot in zip(self._motors, self.inhabitants, strict=True)
         )
-        self._find = tuple(finder(body) for body in self._space.bodies[len(self.layout.things) :])
+        self._find = tuple(finder(body) for body in self._space.bodies)
         self._restless = 0.0
         self._ways = tuple(_ways(robot) for robot in self.inhabitants)
         self._steps = 0
@@ -204,15 +195,19 @@ class SimulatedWorld:
         """Of things and robots (n, 3): x, y, heading, which is not wrapped."""
         return self._now()[:, :3].copy()
 
+    def pose(self, owner: int) -> tuple[float, float, float]:
+        """Of a thing or a robot: x, y, heading, which is not wrapped."""
+        return self._find[owner]()
+
     def motion(self, robot: int) -> Motion:
         """How a robot moves."""
         solid = self._space.bodies[len(self.layout.things) + robot]
         x, y = solid.center_of_gravity
-        return Motion(*local_velocity(solid, (x, y)))
+        return local_velocity(solid, (x, y))
 
     def commanded(self, robot: int) -> Motion:
         """How a robot's motors want it to move: wheels turn so, whether they slip or not."""
-        return Motion(*self._motors[robot].ramps.now)
+        return self._motors[robot].ramps.now
 
     def geometry(self) -> Geometry:
         """What stands where now; the same object each time, brought up to date."""
@@ -229,7 +224,7 @@ class SimulatedWorld:
         ours = [touch for touch in self._touches if owner in (touch.a, touch.b)]
         if not ours:
             return ()
-        x, y, heading = self._find[robot]()
+        x, y, heading = self.pose(owner)
         found = []
         for touch in ours:
             bearing = math.remainder(math.atan2(touch.y - y, touch.x - x) - heading, math.tau)
