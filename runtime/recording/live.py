@@ -59,6 +59,11 @@ class Live:
         self._owners = [*(thing.name for thing in begun.world.layout.things), *self._robots]
         self._reads = [self._read(name) for name in names]
 
+    @property
+    def count(self) -> int:
+        """How many it reads."""
+        return len(self._reads)
+
     def now(self) -> list[float]:
         """Their values, in SI."""
         return [read() for _, read in self._reads]

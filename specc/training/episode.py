@@ -148,38 +148,36 @@ def _course(
     exploring: Exploring,
 ) -> _Course:
     """Run until it is over; whether it is, is asked at each decision."""
-    rows: list[list[float]] = []
+    instants = max(round(scenario.duration / scenario.step), 1)
+    rows = np.empty((instants, live.count))
     decided: list[int] = []
     running = 0.0
 
     def course(end: int, *, ends: bool) -> _Course:
         until = [*decided, end] if ends else decided
-        return _Course(np.array(rows[: end + 1]), np.array(until), ends, running)
+        return _Course(rows[: end + 1], np.array(until), ends, running)
 
-    for instant in range(max(round(scenario.duration / scenario.step), 1)):
+    for instant in range(instants):
         began = process_time()
         scheduler.step()
         running += process_time() - began
-        rows.append(live.now())
+        rows[instant] = live.now()
         if len(exploring.choices) > len(decided):
-            over = _over(training, rows, decided, instant)
+            over = _over(training, rows[:instant], decided)
             if over >= 0:
                 return course(over, ends=True)
             decided.append(max(instant - 1, 0))
-    over = _over(training, rows, decided, len(rows))
+    over = _over(training, rows, decided)
     if over >= 0:
         return course(over, ends=True)
     is_judged_whole = any(measure.how is How.ROBUSTNESS for measure in training.measures)
-    return course(len(rows) - 1, ends=is_judged_whole)
+    return course(instants - 1, ends=is_judged_whole)
 
 
-def _over(
-    training: Training, rows: Sequence[Sequence[float]], decided: Sequence[int], end: int
-) -> int:
-    """The first row after the last decision, before `end`, at which the episode is over, or -1."""
+def _over(training: Training, rows: Array, decided: Sequence[int]) -> int:
+    """The first of the rows after the last decision at which the episode is over, or -1."""
     since = decided[-1] + 1 if decided else 0
-    count = len(training.quantities)
-    found = ended_at(training, np.array([row[:count] for row in rows[since:end]]))
+    found = ended_at(training, rows[since:, : len(training.quantities)])
     return found + since if found >= 0 else -1
 
 
