@@ -19,15 +19,18 @@ from verifier.report.report import Verdict
 from verifier.report.sarif import as_sarif
 
 
-def write_book_report(verdict: BookVerdict, path: Path) -> None:
-    """Write it as .html, .json, .txt, .xml (JUnit) or .sarif."""
+def write_book_report(verdict: BookVerdict, path: Path, *, procedures: bool = False) -> None:
+    """Write it as .html, .json, .txt, .xml (JUnit) or .sarif.
+
+    procedures: whether people are also told what to record of modules without recordings.
+    """
     match path.suffix.lower():
         case ".html":
-            data = book_verdict_page(verdict).encode()
+            data = book_verdict_page(verdict, procedures=procedures).encode()
         case ".json":
             data = json_bytes(book_record(verdict))
         case ".txt":
-            data = book_text(verdict).encode()
+            data = book_text(verdict, procedures=procedures).encode()
         case ".xml":
             data = _junit(verdict)
         case ".sarif":

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 import typer
 
 from specc.cli.console import print_json, print_text, progress_bar, say
-from specc.cli.options import Clock, ClockOption, Format, FormatOption, JudgedBy
+from specc.cli.options import Clock, ClockOption, Format, FormatOption, JudgedBy, one_spec
 from specc.cli.portrait import StyleOption
 from specc.figures.style_names import Style
 
@@ -37,7 +37,7 @@ def explain(
         list[str],
         typer.Option("--node", metavar="ROBOT.NODE", help="An arbiter of the run; default all."),
     ] = [],  # noqa: B006  typer copies it
-    spec: JudgedBy = None,
+    spec: JudgedBy = [],  # noqa: B006  typer copies it
     at: At = None,
     start: Begin = None,
     end: End = None,
@@ -80,7 +80,7 @@ def explain(
     with progress_bar(f"reading {recording.name}") as bar:
         found = explained(
             recording,
-            spec,
+            one_spec(spec),
             nodes,
             allow_code=allow_code,
             clock=clock.value,

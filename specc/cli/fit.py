@@ -5,7 +5,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from specc.cli.console import print_json, print_text, say, shown_bar
-from specc.cli.options import Clock, ClockOption, Format, FormatOption, JudgedBy, Logs, Strict
+from specc.cli.options import (
+    Clock,
+    ClockOption,
+    Format,
+    FormatOption,
+    JudgedBy,
+    Logs,
+    Strict,
+    one_spec,
+)
 from specc.cli.status import Status
 from specc.cli.warming import warmed
 
@@ -15,7 +24,7 @@ if TYPE_CHECKING:
 
 def fit(
     traces: Logs,
-    spec: JudgedBy = None,
+    spec: JudgedBy = [],  # noqa: B006  typer copies it
     write: Annotated[
         bool, typer.Option("--write", help="Edit the spec's file; without it, only show the edit.")
     ] = False,
@@ -46,11 +55,12 @@ def fit(
     from specc.fitting.fit import fit as fitted_to
     from specc.fitting.fitted import Outcome
 
-    warmed(spec)
+    named = one_spec(spec)
+    warmed(named)
     with shown_bar("fit") as bar:
         found = fitted_to(
             traces,
-            spec,
+            named,
             clock.value,
             strict=strict,
             anyway=anyway,

@@ -54,7 +54,7 @@ Logs: TypeAlias = Annotated[
     ),
 ]
 JudgedBy: TypeAlias = Annotated[
-    Path | None,
+    list[Path],
     typer.Option(
         "--spec",
         metavar="SPEC",
@@ -89,6 +89,20 @@ Settings: TypeAlias = Annotated[
 ]
 
 
+def one_spec(named: list[Path]) -> Path | None:
+    """What `--spec` names; None where it names nothing.
+
+    Raises:
+        typer.BadParameter: it names several.
+    """
+    if len(named) > 1:
+        raise typer.BadParameter(
+            f"--spec: name one spec, for all logs (got {', '.join(map(str, named))}); which of"
+            " several is whose, `traces:` in a specc.yaml says"
+        )
+    return named[0] if named else None
+
+
 def assignments(settings: list[str]) -> dict[str, str]:
     """`["x=1", "v=2 m/s"]` as a mapping.
 
@@ -117,7 +131,7 @@ def one_assignment(setting: str) -> tuple[str, str]:
     return name, value
 
 
-def names_of(listed: str | None) -> tuple[str, ...] | None:
+def names_of(listed: str | None, option: str = "--axes") -> tuple[str, ...] | None:
     """`"x, v"` as two names; None where nothing was given.
 
     Raises:
@@ -127,5 +141,6 @@ def names_of(listed: str | None) -> tuple[str, ...] | None:
         return None
     names = tuple(name.strip() for name in listed.split(","))
     if not all(names):
-        raise typer.BadParameter(f"--axes: write names of states, such as x,v (got '{listed}')")
+        what = "states, such as x,v" if option == "--axes" else "modules, such as seek,avoid"
+        raise typer.BadParameter(f"{option}: write names of {what} (got '{listed}')")
     return names

@@ -17,6 +17,8 @@ from specc.cli.options import (
     ReportFormatOption,
     Reports,
     Strict,
+    names_of,
+    one_spec,
 )
 from specc.cli.status import Status
 from specc.cli.warming import warmed
@@ -32,7 +34,7 @@ BOOK: Final = "book.json"
 
 def verify(
     traces: Logs,
-    spec: JudgedBy = None,
+    spec: JudgedBy = [],  # noqa: B006  typer copies it
     output: Reports = [],  # noqa: B006  typer copies it
     clock: ClockOption = Clock.AUTO,
     strict: Strict = False,
@@ -42,6 +44,19 @@ def verify(
     ] = False,
     quick: Annotated[
         bool, typer.Option("--quick", help="The verdict only, without what explains it.")
+    ] = False,
+    only: Annotated[
+        str | None,
+        typer.Option(
+            "--only", metavar="NAME[,NAME]", help="Of a book these modules alone; all others wait."
+        ),
+    ] = None,
+    procedures: Annotated[
+        bool,
+        typer.Option(
+            "--procedures",
+            help="Of a book also print what to record of modules without a recording.",
+        ),
     ] = False,
     form: ReportFormatOption = ReportFormat.TEXT,
 ) -> int:
@@ -56,7 +71,8 @@ def verify(
 
     Where a book (see `specc export`) comes first, its modules are judged, each by all recordings
     together: which are done, which fail, and which lack data, with what is still to be recorded.
-    `--spec` then says where in the logs things stand.
+    A log of which nothing says what it is of is taken for the module whose names it holds.
+    `--spec` says where in the logs things stand, `--only` which modules count.
 
     **Examples**
 
@@ -68,37 +84,42 @@ def verify(
 
     `specc verify drive.mcap --format json > verdict.json`
 
-    `specc verify book/ runs/*.mcap`
+    `specc verify book/ runs/*.mcap --only seek,avoid`
     """
     from specc.verifying.runs import distinct, verify_each
 
     _refuse_early(output)
+    named = one_spec(spec)
     if (traces[0] / BOOK).is_file():
         from specc.cli.verify_book import verify_book
 
         return verify_book(
             traces[0],
             traces[1:],
-            spec,
+            named,
             output,
             clock,
             form,
             "verdict" if quick else "all" if output else "reasons",
+            only=names_of(only, "--only"),
+            procedures=procedures,
             strict=strict,
             allow_code=allow_code,
         )
+    if only is not None or procedures:
+        raise typer.BadParameter("--only and --procedures are of a book, which comes first")
     given, traces = traces, [Path(each) for each in distinct(traces)]
     if len(traces) < len(given):
         say("a recording that is named more than once counts once", "bold yellow")
-    warmed(spec)
+    warmed(named)
     judge = partial(
         verify_each,
         traces,
-        spec,
+        named,
         clock.value,
         allow_code=allow_code,
         strict=strict,
-        depth="verdict" if quick else _depth(traces, spec, output, form),
+        depth="verdict" if quick else _depth(traces, named, output, form),
     )
     outcomes, is_interrupted = judged_with_bar(judge, len(traces))
     return _told(outcomes, traces, output, form, is_interrupted=is_interrupted)

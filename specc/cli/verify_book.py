@@ -11,8 +11,8 @@ from specc.cli.options import Clock, ReportFormat
 from specc.cli.status import Status
 from specc.cli.watching import judged_with_bar
 from specc.faults import fault
-from specc.texts.book_verdict import book_text
-from specc.verifying.book import How, judge_each
+from specc.texts.book_verdict import book_text, taken_text
+from specc.verifying.book import How, judge_each, only_of
 from specc.verifying.book_modules import BookVerdict, Standing
 from specc.verifying.book_record import book_record
 from specc.verifying.book_verdict import book_verdict
@@ -29,13 +29,15 @@ def verify_book(
     form: ReportFormat,
     depth: Depth,
     *,
+    only: tuple[str, ...] | None,
+    procedures: bool,
     strict: bool,
     allow_code: bool,
 ) -> int:
     """The exit status, after everything is printed and written: 0 where all modules are done.
 
     Raises:
-        SpecError: the book can't be used, or no recording is named (V441).
+        SpecError: the book can't be used, no recording is named (V441), or no such module (V444).
     """
     if not traces:
         raise fault("V441", path, "no recording is named", f"specc verify {path} runs/*.mcap")
@@ -47,28 +49,31 @@ def verify_book(
         allow_code=allow_code,
         strict=strict,
         depth=depth,
+        only=only_of(book, only),
     )
     judge = partial(judge_each, book, traces, how)
     outcomes, is_interrupted = judged_with_bar(judge, len(traces))
     if is_interrupted:
         say("interrupted: nothing is said of the book", "bold red")
         return Status.INTERRUPTED
-    verdict = book_verdict(book, outcomes)
-    _print(verdict, form)
+    verdict = book_verdict(book, outcomes, how.only)
+    _print(verdict, form, procedures=procedures)
     for file in output:
-        write_book_report(verdict, file)
+        write_book_report(verdict, file, procedures=procedures)
         say(f"wrote {file}", "bold")
     return _status(verdict)
 
 
-def _print(verdict: BookVerdict, form: ReportFormat) -> None:
+def _print(verdict: BookVerdict, form: ReportFormat, *, procedures: bool) -> None:
     match form:
         case ReportFormat.JSON:
             print_json(book_record(verdict))
         case ReportFormat.GITHUB:
             print_text(annotations_of(verdict))
         case ReportFormat.TEXT:
-            print_text(book_text(verdict))
+            for told in taken_text(verdict):
+                say(told)
+            print_text(book_text(verdict, procedures=procedures))
 
 
 def _status(verdict: BookVerdict) -> int:

@@ -1,12 +1,20 @@
 """Where the modules of a book stand, as one page: a row for each, then what is known of each."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 from specc.figures.quantities import seconds
 from specc.pages.page import Page, RunRow, RunsPage, RunsTable
 from specc.pages.report_page import SIGNS, gathered, rendered
-from specc.texts.book_verdict import last_line, module_names, worst_first
+from specc.texts.book_verdict import (
+    done_first,
+    done_words,
+    lacking,
+    last_line,
+    module_names,
+    unrecorded,
+)
 from specc.texts.scenario_runs import found_in
 from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Standing
 from verifier.report.report import Verdict
@@ -27,14 +35,19 @@ HOW: Final = (
 RUNS: Final = "Runs are those of the book's test procedure that go where no recording has been."
 
 
-def book_verdict_page(verdict: BookVerdict) -> str:
-    """All modules as self-contained HTML."""
-    return rendered("runs.html.j2", gathered_book(verdict))
+def book_verdict_page(verdict: BookVerdict, *, procedures: bool = False) -> str:
+    """All modules as self-contained HTML.
+
+    procedures: whether it also says what to record of modules of which nothing was recorded.
+    """
+    return rendered("runs.html.j2", gathered_book(verdict, procedures=procedures))
 
 
-def gathered_book(verdict: BookVerdict) -> RunsPage:
+def gathered_book(verdict: BookVerdict, *, procedures: bool = False) -> RunsPage:
     """What the page says."""
-    names, ordered = module_names(verdict), worst_first(verdict)
+    names, ordered = module_names(verdict), done_first(verdict)
+    told = lacking(verdict, procedures=procedures)
+    left = unrecorded(verdict, procedures=procedures)
     anchors = {id(each): f"module-{k + 1}" for k, each in enumerate(ordered)}
     worst = VERDICTS[verdict.standing]
     rows = tuple(_row(each, names[id(each)], anchors[id(each)]) for each in ordered)
@@ -51,16 +64,18 @@ def gathered_book(verdict: BookVerdict) -> RunsPage:
         reasons=tuple(
             f"{names[id(each)]}: {each.why[0]}"
             for each in ordered
-            if each.standing in {Standing.FAILS, Standing.LACKS}
+            if each.standing is Standing.FAILS or each in told
         ),
-        advice=tuple(
-            f"{names[id(each)]}: {each.to_record[0]}" for each in ordered if each.to_record
+        advice=(
+            *(f"{names[id(each)]}: {each.to_record[0]}" for each in told if each.to_record),
+            *([left] if left else []),
         ),
         tables=(
             RunsTable("Every module", "module", titles, (*rows, *lost), HOW, words=True),
-            *_to_record(ordered, names, anchors),
+            *_to_record(told, names, anchors),
         ),
         pages=tuple(_page(each, anchors[id(each)]) for each in ordered if each.together),
+        word=done_words(verdict),
     )
 
 
@@ -69,7 +84,15 @@ def _row(each: ModuleVerdict, name: str, anchor: str) -> RunRow:
     judged = "–" if each.together is None else seconds(each.together.report.trace.judged)
     found = each.why[0] if each.together is None else found_in(each.together)
     cells = ((each.piece.kind, ""), (judged, ""), (found, ""))
-    return RunRow(anchor if each.together else "", name, str(shown), SIGNS[shown], cells, "")
+    return RunRow(
+        anchor if each.together else "",
+        name,
+        str(shown),
+        SIGNS[shown],
+        cells,
+        "",
+        str(each.standing),
+    )
 
 
 def _to_record(
@@ -84,6 +107,7 @@ def _to_record(
             SIGNS[VERDICTS[each.standing]],
             ((told, ""),),
             "",
+            str(each.standing),
         )
         for each in ordered
         for told in each.to_record
@@ -94,4 +118,5 @@ def _to_record(
 
 def _page(each: ModuleVerdict, anchor: str) -> tuple[str, Page]:
     assert each.together is not None, "a page is of what was judged"
-    return anchor, gathered(each.together, f"{anchor}-", is_drawn=len(each.members) == 1)
+    page = gathered(each.together, f"{anchor}-", is_drawn=len(each.members) == 1)
+    return anchor, replace(page, word=str(each.standing))

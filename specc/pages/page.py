@@ -78,7 +78,7 @@ class Part:
 @final
 @dataclass(frozen=True, slots=True)
 class Page:
-    """The report of one trace, in the order in which it is read.
+    """The report of one trace, in the order in which it is read; word: for the verdict, if another.
 
     explanations: why the robot departs, and what else speaks of the robot. limits: how far the
     verdict reaches.
@@ -103,12 +103,16 @@ class Page:
     notes: tuple[str, ...]
     provenance: tuple[tuple[str, str], ...]
     advice: tuple[str, ...]
+    word: str = ""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class RunRow:
-    """One trace in the table of all: a link to its page, or why it can't be used."""
+    """One trace in the table of all: a link to its page, or why it can't be used.
+
+    word: for the verdict, if another.
+    """
 
     anchor: str
     source: str
@@ -116,6 +120,7 @@ class RunRow:
     sign: str
     cells: tuple[tuple[str, str], ...]
     reason: str
+    word: str = ""
 
 
 @final
@@ -137,7 +142,7 @@ class RunsTable:
 @final
 @dataclass(frozen=True, slots=True)
 class RunsPage:
-    """Many traces, or the parts of one, on one page."""
+    """Many traces, or the parts of one, on one page; word: for the verdict, if another."""
 
     title: str
     verdict: str
@@ -147,3 +152,4 @@ class RunsPage:
     advice: tuple[str, ...]
     tables: tuple[RunsTable, ...]
     pages: tuple[tuple[str, Page], ...]
+    word: str = ""

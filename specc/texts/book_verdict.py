@@ -4,50 +4,105 @@ from typing import Final
 
 from spec_schema.diagnostics import render
 from specc.texts.scenario_runs import found_in
-from specc.verifying.book_modules import WORST_FIRST, BookVerdict, ModuleVerdict, Standing
+from specc.verifying.book_modules import DONE_FIRST, BookVerdict, ModuleVerdict, Standing
 from verifier.report.layout import bullets, section, wide_table, wrapped
-from verifier.report.wording import seconds
+from verifier.report.wording import listed, seconds
 
 TITLES: Final = ("module", "kind", "spec", "is", "judged", "what was found")
 MOST_REASONS: Final = 2
 """So many reasons are told of each module."""
 
 
-def book_text(verdict: BookVerdict) -> str:
-    """The table, why modules are not done, what is still to be recorded, and the last line."""
+def book_text(verdict: BookVerdict, *, procedures: bool = False) -> str:
+    """The table, why modules are not done, what is still to be recorded, and the last line.
+
+    procedures: whether also of modules of which nothing was recorded.
+    """
     names = module_names(verdict)
-    rows = [_row(each, names) for each in worst_first(verdict)]
+    rows = [_row(each, names) for each in done_first(verdict)]
     failing = [each for each in verdict.modules if each.standing is Standing.FAILS]
-    lacking = [each for each in verdict.modules if each.standing is Standing.LACKS]
     parts = (
         wide_table([TITLES, *rows]),
         section("fails", [wrapped(_told(each, names)) for each in failing]),
-        *(_to_record(each, names) for each in lacking),
+        *(_to_record(each, names) for each in lacking(verdict, procedures=procedures)),
+        wrapped(unrecorded(verdict, procedures=procedures)),
         *(render(each.error.diagnostics) for each in verdict.unusable),
         last_line(verdict),
     )
     return "\n\n".join(part for part in parts if part)
 
 
+def taken_text(verdict: BookVerdict) -> tuple[str, ...]:
+    """How it was found what each log is of, a line for all that are alike."""
+    sources: dict[str, list[str]] = {}
+    for module in verdict.modules:
+        for each in module.members:
+            if not each.part:
+                sources.setdefault(each.found.how, []).append(each.report.trace.source)
+    found = {how: list(dict.fromkeys(each)) for how, each in sources.items()}
+    return tuple(
+        f"{each[0]}{f' and {len(each) - 1} more' if len(each) > 1 else ''}: {how}"
+        for how, each in found.items()
+    )
+
+
 def last_line(verdict: BookVerdict) -> str:
-    """`FAILS  3 modules: 1 fails, 1 lacks data, 1 done`."""
-    counts = {each: verdict.count(each) for each in WORST_FIRST}
-    told = ", ".join(f"{count} {_verb(each, count)}" for each, count in counts.items() if count)
-    word = {Standing.DONE: "DONE", Standing.FAILS: "FAIL"}.get(verdict.standing, "LACKS DATA")
-    modules = len(verdict.modules)
+    """`2 of 8 modules done, 0 fail, 6 lack data`."""
+    free = verdict.count(Standing.FREE)
+    told = [done_words(verdict)]
+    told += [_counted(verdict, each) for each in (Standing.FAILS, Standing.LACKS)]
+    told += [_counted(verdict, Standing.FREE)] if free else []
+    told += [f"{verdict.left_out} left out"] if verdict.left_out else []
     lost = len(verdict.unusable)
-    unusable = f", {lost} recording{'s' if lost > 1 else ''} can't be used" if lost else ""
-    return f"{word}  {modules} module{'s' if modules > 1 else ''}: {told}{unusable}"
+    told += [f"{lost} recording{'s' if lost > 1 else ''} can't be used"] if lost else []
+    return ", ".join(told)
 
 
-def _verb(standing: Standing, count: int) -> str:
+def done_words(verdict: BookVerdict) -> str:
+    """`2 of 8 modules done`."""
+    count = len(verdict.modules) - verdict.count(Standing.FREE)
+    modules = "module" if count == 1 else "modules"
+    return f"{verdict.count(Standing.DONE)} of {count} {modules} done"
+
+
+def _counted(verdict: BookVerdict, standing: Standing) -> str:
+    count = verdict.count(standing)
     plural = {Standing.FAILS: "fail", Standing.LACKS: "lack data", Standing.FREE: "promise nothing"}
-    return plural.get(standing, str(standing)) if count > 1 else str(standing)
+    return f"{count} {standing if count == 1 else plural[standing]}"
 
 
-def worst_first(verdict: BookVerdict) -> list[ModuleVerdict]:
-    """The modules, what is not done first."""
-    return sorted(verdict.modules, key=lambda each: WORST_FIRST.index(each.standing))
+def done_first(verdict: BookVerdict) -> list[ModuleVerdict]:
+    """The modules, what is done first and what nobody recorded last."""
+    return sorted(
+        verdict.modules,
+        key=lambda each: (DONE_FIRST.index(each.standing), not each.is_recorded),
+    )
+
+
+def lacking(verdict: BookVerdict, *, procedures: bool) -> list[ModuleVerdict]:
+    """The modules of which is told what to record: those that were recorded, or all."""
+    return [
+        each
+        for each in done_first(verdict)
+        if each.standing is Standing.LACKS and (procedures or each.is_recorded)
+    ]
+
+
+def unrecorded(verdict: BookVerdict, *, procedures: bool) -> str:
+    """Where in the book it stands what to record of the other modules; empty where there are none.
+
+    `nothing is recorded of dock and see: what to record stands in the book, on pages/dock.html and
+    pages/see.html; --procedures prints it`
+    """
+    told = lacking(verdict, procedures=procedures)
+    left = [e for e in verdict.modules if e.standing is Standing.LACKS and e not in told]
+    if not left:
+        return ""
+    names = module_names(verdict)
+    return (
+        f"nothing is recorded of {listed([names[id(each)] for each in left])}: what to record"
+        f" stands in the book, on {listed([each.page for each in left])}; --procedures prints it"
+    )
 
 
 def module_names(verdict: BookVerdict) -> dict[int, str]:

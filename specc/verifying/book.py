@@ -11,13 +11,15 @@ from runtime.architecture import Architecture
 from runtime.program import Program
 from runtime.scenario import Robot, Start
 from spec_schema.diagnostics import SpecError
+from spec_schema.suggest import did_you_mean
 from specc.book.loading import LoadedBook
 from specc.faults import fault
 from specc.verifying.architecture import NotJudged
+from specc.verifying.book_matching import spec_held
 from specc.verifying.book_modules import Piece, Place, pieces_of
 from specc.verifying.recording import verify_standard
 from specc.verifying.runs import Unusable, distinct
-from specc.verifying.spec_finding import find_spec
+from specc.verifying.spec_finding import claimed_spec
 from specc.verifying.standard import Carried, Standard, carried_by
 from specc.verifying.trace import Clock, Verification, verify_by
 from verifier.report.examination import Depth
@@ -26,6 +28,8 @@ from verifier.traces.files.log import Progress
 
 NO_MODULE = "V440"
 """The code of a recording of nothing that is in the book."""
+NO_SUCH = "V444"
+"""The code of a module that the book does not have."""
 
 
 @final
@@ -46,7 +50,8 @@ class How:
     """How recordings are held against a book.
 
     program_of: makes the spec that tells where in logs things stand. spec: the path of that one;
-    None: what a log carries, else what the project names.
+    None: what a log carries, else what the project names, else what its own names tell. only: the
+    modules that are judged; None: all.
     """
 
     program_of: Callable[[Path], Program | Arbiter]
@@ -55,6 +60,40 @@ class How:
     allow_code: bool = False
     strict: bool = False
     depth: Depth = "reasons"
+    only: frozenset[Place] | None = None
+
+    def counts(self, place: Place) -> bool:
+        """Whether a module is judged."""
+        return self.only is None or place in self.only
+
+
+def only_of(book: LoadedBook, names: Sequence[str] | None) -> frozenset[Place] | None:
+    """The modules of these names, `NODE` or `ARCHITECTURE.NODE`, or of specs; None: all.
+
+    Raises:
+        SpecError: the book has none of a name (V444).
+    """
+    if names is None:
+        return None
+    every = {name: place for piece in _pieces(book) for name, place in _names(piece)}
+    found = [
+        piece.place for wanted in names for piece in _pieces(book) if wanted in dict(_names(piece))
+    ]
+    strange = next((name for name in names if name not in every), None)
+    if strange is not None:
+        there = f"modules: {', '.join(piece.place.node for piece in _pieces(book))}"
+        meant = did_you_mean(strange, every)
+        message = f"no module of the book is called '{strange}'"
+        raise fault(NO_SUCH, book.path, message, f"{meant}\n{there}" if meant else there)
+    return frozenset(found)
+
+
+def _names(piece: Piece) -> Iterator[tuple[str, Place]]:
+    """What a module may be called."""
+    yield piece.place.node, piece.place
+    yield f"{piece.place.architecture}.{piece.place.node}", piece.place
+    if piece.spec is not None:
+        yield piece.spec.name, piece.place
 
 
 def judge_each(
@@ -70,7 +109,7 @@ def judge_each(
         try:
             carried = carried_by(trace)
             if carried is None:
-                yield _of_log(book, trace, how, tell, reading)
+                yield from _of_log(book, trace, how, tell, reading)
             else:
                 yield from _of_run(book, trace, carried, how, tell, reading)
         except SpecError as error:
@@ -94,10 +133,13 @@ def _of_run(
     if not robots:
         raise _no_module(book, trace, [robot.architecture.name for robot in carried.robots])
     first = robots[0].architecture
+    counting = _counting(robots, how)
+    if counting is not None and not counting:
+        return
     standard = Standard(
         robots=robots,
         requirements=(),
-        only=None,
+        only=counting,
         spec=SpecIdentity(first.name, first.source.file, first.source.sha256),
         how=f"the book {book.path}",
         beside=(book.path / first.source.file).parent,
@@ -119,6 +161,18 @@ def _of_run(
     for lost in run.not_judged:
         part = lost.source.removeprefix(f"{trace}: ")
         yield OfModules((_place(names, part),), lost)
+
+
+def _counting(robots: Sequence[Robot], how: How) -> frozenset[str] | None:
+    """The nodes that count, `robot.node`; None: all."""
+    if how.only is None:
+        return None
+    return frozenset(
+        f"{robot.name}.{node.name}"
+        for robot in robots
+        for node in robot.architecture.nodes
+        if how.counts(Place(robot.architecture.name, node.name))
+    )
 
 
 def _place(architectures: dict[str, str], part: str) -> Place:
@@ -149,12 +203,15 @@ def _of_log(
     how: How,
     tell: Callable[[str], None] | None,
     reading: Progress | None,
-) -> OfModules:
-    """A log of one behavior or arbiter: every module that runs that spec."""
-    found = find_spec(trace, how.spec, how.program_of)
+) -> Iterator[OfModules]:
+    """A log of one behavior or arbiter: every module that runs that spec, and that counts."""
+    found = claimed_spec(trace, how.spec, how.program_of) or spec_held(book, trace, _pieces(book))
     pieces = _pieces_named(book, found.program)
     if not pieces:
         raise _no_module(book, trace, [found.program.name])
+    pieces = [piece for piece in pieces if how.counts(piece.place)]
+    if not pieces:
+        return
     own = pieces[0].spec
     judged = _bound(own, found.program)
     verified = verify_by(
@@ -167,17 +224,20 @@ def _of_log(
         progress=tell,
         reading=reading,
     )
-    named = f"the book {book.path}; where things stand in the log: {found.how}"
+    named = f"{found.how}; judged by the book {book.path}"
     made = replace(verified, found=replace(verified.found, how=named))
-    return OfModules(tuple(each.place for each in pieces), made)
+    yield OfModules(tuple(each.place for each in pieces), made)
+
+
+def _pieces(book: LoadedBook) -> list[Piece]:
+    return [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
 
 
 def _pieces_named(book: LoadedBook, spec: Program | Arbiter) -> list[Piece]:
     """The modules that run a spec of that name and kind."""
-    every = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
     return [
         piece
-        for piece in every
+        for piece in _pieces(book)
         if type(piece.spec) is type(spec)
         and piece.spec is not None
         and piece.spec.name == spec.name
@@ -194,7 +254,6 @@ def _bound(own: Program | Arbiter | None, given: Program | Arbiter) -> Program |
 
 
 def _no_module(book: LoadedBook, trace: Path, names: Sequence[str]) -> SpecError:
-    every = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
-    there = sorted({piece.spec.name for piece in every if piece.spec is not None})
+    there = sorted({piece.spec.name for piece in _pieces(book) if piece.spec is not None})
     message = f"this is a recording of '{names[0]}', which is no module of the book"
     return fault(NO_MODULE, trace, message, f"the book '{book.book.name}' has: {', '.join(there)}")

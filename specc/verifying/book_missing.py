@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 from specc.book.loading import LoadedBook
+from specc.book.manifest import Module
 from specc.book.trials import Trial
 from specc.verifying.book_modules import Place
 from verifier.procedure.bench_wording import how_sentence
@@ -11,13 +12,13 @@ from verifier.procedure.remaining import remaining_runs
 from verifier.procedure.wording import runs_in_words
 from verifier.report.examination import Examination
 
-Trials: TypeAlias = Mapping[Place, Trial]
+Told: TypeAlias = Mapping[Place, Module]
 
 
-def trials_of(book: LoadedBook) -> Trials:
-    """The test procedure of each module, as the book has it."""
+def told_of(book: LoadedBook) -> Told:
+    """What the book tells of each module: its page, and its test procedure."""
     return {
-        Place(architecture.name, module.node): module.trial
+        Place(architecture.name, module.node): module
         for architecture in book.book.architectures
         for module in architecture.modules
     }

@@ -23,6 +23,8 @@ class Standing(StrEnum):
     FREE = "promises nothing"
 
 
+DONE_FIRST: Final = (Standing.DONE, Standing.FAILS, Standing.LACKS, Standing.FREE)
+"""The order in which modules are shown."""
 WORST_FIRST: Final = (Standing.FAILS, Standing.LACKS, Standing.DONE, Standing.FREE)
 
 
@@ -59,7 +61,7 @@ class ModuleVerdict:
 
     members: what single recordings say; not_judged: of which nothing can be said, and why.
     together: what they say together; None where none says anything. why: what decides, first of
-    all; to_record: what is still to be recorded. Both are sentences.
+    all; to_record: what is still to be recorded. Both are sentences. page: of the book.
     """
 
     piece: Piece
@@ -69,16 +71,26 @@ class ModuleVerdict:
     together: Examination | None
     why: tuple[str, ...]
     to_record: tuple[str, ...]
+    page: str
+
+    @property
+    def is_recorded(self) -> bool:
+        """Whether anything was recorded of it that says something."""
+        return self.together is not None
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class BookVerdict:
-    """All modules of a book, in its order, and recordings that can't be used."""
+    """Modules of a book, in its order, and recordings that can't be used.
+
+    left_out: how many other modules it has, which nobody asked for.
+    """
 
     name: str
     modules: tuple[ModuleVerdict, ...]
     unusable: tuple[Unusable, ...]
+    left_out: int = 0
 
     @property
     def standing(self) -> Standing:

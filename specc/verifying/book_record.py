@@ -11,7 +11,7 @@ def book_record(verdict: BookVerdict) -> dict[str, object]:
         "book": verdict.name,
         "standing": str(verdict.standing),
         "counts": {str(each): verdict.count(each) for each in WORST_FIRST}
-        | {"unusable": len(verdict.unusable)},
+        | {"unusable": len(verdict.unusable), "left out": verdict.left_out},
         "modules": [_module(each) for each in verdict.modules],
         "unusable": [
             {
@@ -31,10 +31,15 @@ def _module(each: ModuleVerdict) -> dict[str, object]:
         "kind": piece.kind,
         "spec": None if piece.spec is None else piece.spec.name,
         "standing": str(each.standing),
+        "page": each.page,
         "why": list(each.why),
         "to_record": list(each.to_record),
         "recordings": [
-            {"source": one.report.trace.source, "verdict": str(one.report.verdict)}
+            {
+                "source": one.report.trace.source,
+                "verdict": str(one.report.verdict),
+                "found_by": one.found.how,
+            }
             for one in each.members
         ],
         "not_judged": [{"source": one.source, "why": one.why} for one in each.not_judged],

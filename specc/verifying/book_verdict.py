@@ -8,11 +8,18 @@ from pathlib import Path
 from runtime.arbiter import Arbiter
 from runtime.program import Program
 from specc.book.loading import LoadedBook, load_book
-from specc.book.trials import Trial
+from specc.book.manifest import Module
 from specc.verifying.architecture import NotJudged
-from specc.verifying.book import How, OfModules, Outcome, judge_each
-from specc.verifying.book_missing import to_record, trials_of
-from specc.verifying.book_modules import BookVerdict, ModuleVerdict, Piece, Standing, pieces_of
+from specc.verifying.book import How, OfModules, Outcome, judge_each, only_of
+from specc.verifying.book_missing import to_record, told_of
+from specc.verifying.book_modules import (
+    BookVerdict,
+    ModuleVerdict,
+    Piece,
+    Place,
+    Standing,
+    pieces_of,
+)
 from specc.verifying.runs import Unusable
 from specc.verifying.trace import Clock, Verification, program_for_verify
 from verifier.arbitration.together import pooled_decisions
@@ -39,6 +46,7 @@ def verify_book(
     allow_code: bool = False,
     strict: bool = False,
     depth: Depth = "all",
+    only: Sequence[str] | None = None,
 ) -> BookVerdict:
     """Hold recordings against a book: where each of its modules stands, by all of them together.
 
@@ -47,45 +55,52 @@ def verify_book(
         allow_code: whether arbiters that are code of the user's own may be run.
         strict: any loss in a log is an error.
         depth: what is found out beside the verdict.
+        only: the names of the modules that are judged; None: all.
 
     Raises:
-        SpecError: the book can't be used.
+        SpecError: the book can't be used, or has no module of such a name (V444).
     """
     loaded = book if isinstance(book, LoadedBook) else load_book(book)
     named = None if spec is None else Path(spec)
     program_of = cache(partial(program_for_verify, allow_code=allow_code))
-    how = How(program_of, named, clock, allow_code, strict, depth)
-    return book_verdict(loaded, tuple(judge_each(loaded, [Path(each) for each in traces], how)))
+    places = only_of(loaded, only)
+    how = How(program_of, named, clock, allow_code, strict, depth, places)
+    outcomes = tuple(judge_each(loaded, [Path(each) for each in traces], how))
+    return book_verdict(loaded, outcomes, places)
 
 
-def book_verdict(book: LoadedBook, outcomes: Sequence[Outcome]) -> BookVerdict:
-    """Every module of the book by all outcomes that are about it."""
+def book_verdict(
+    book: LoadedBook, outcomes: Sequence[Outcome], only: frozenset[Place] | None = None
+) -> BookVerdict:
+    """Every module of the book, or those that count, by all outcomes that are about it."""
     told = [each for each in outcomes if isinstance(each, OfModules)]
-    trials = trials_of(book)
-    pieces = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
+    modules = told_of(book)
+    every = [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
+    pieces = [piece for piece in every if only is None or piece.place in only]
     return BookVerdict(
         name=book.book.name,
-        modules=tuple(_module(piece, trials[piece.place], told) for piece in pieces),
+        modules=tuple(_module(piece, modules[piece.place], told) for piece in pieces),
         unusable=tuple(each for each in outcomes if isinstance(each, Unusable)),
+        left_out=len(every) - len(pieces),
     )
 
 
-def _module(piece: Piece, trial: Trial, told: Sequence[OfModules]) -> ModuleVerdict:
+def _module(piece: Piece, module: Module, told: Sequence[OfModules]) -> ModuleVerdict:
     mine = [each.outcome for each in told if piece.place in each.places]
     members = tuple(each for each in mine if isinstance(each, Verification))
     lost = tuple(each for each in mine if isinstance(each, NotJudged))
     if piece.spec is None:
-        return ModuleVerdict(piece, Standing.FREE, (), lost, None, (NOTHING,), ())
+        return ModuleVerdict(piece, Standing.FREE, (), lost, None, (NOTHING,), (), module.page)
     if not members:
         why = tuple(dict.fromkeys(each.why for each in lost)) or (NEVER,)
-        needed = to_record(trial, None)
-        return ModuleVerdict(piece, Standing.LACKS, (), lost, None, why, needed)
+        needed = to_record(module.trial, None)
+        return ModuleVerdict(piece, Standing.LACKS, (), lost, None, why, needed, module.page)
     together = _together(piece, members)
     failing = [each for each in members if each.report.verdict is Verdict.FAIL]
     standing = Standing.FAILS if failing else STANDINGS[together.report.verdict]
     why = _why(together, failing)
-    needed = to_record(trial, together) if standing is Standing.LACKS else ()
-    return ModuleVerdict(piece, standing, members, lost, together, why, needed)
+    needed = to_record(module.trial, together) if standing is Standing.LACKS else ()
+    return ModuleVerdict(piece, standing, members, lost, together, why, needed, module.page)
 
 
 def _together(piece: Piece, members: Sequence[Verification]) -> Examination:

@@ -2,13 +2,17 @@
 
 import glob
 import hashlib
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Generic, TypeVar, final
 
 from runtime.artifact import ArtifactError, from_bytes
 from runtime.program import Program
+from spec_schema.arbiter import ArbiterSpec
+from spec_schema.behavior import BehaviorSpec
+from spec_schema.diagnostics import SpecError
 from spec_schema.load import load
 from spec_schema.project import ProjectSpec
 from specc.faults import fault
@@ -38,6 +42,21 @@ def find_spec(
     Raises:
         SpecError: there is none, or the attached one is not the project's of the same name.
     """
+    found = claimed_spec(trace, named, program_of)
+    if found is None:
+        project = _project_of(trace)
+        raise _no_project(trace) if project is None else _unclaimed(project, trace)
+    return found
+
+
+def claimed_spec(
+    trace: Path, named: Path | None, program_of: Callable[[Path], T_co]
+) -> Found[T_co | Program] | None:
+    """What `find_spec` finds; None where nothing says which spec the trace is of.
+
+    Raises:
+        SpecError: the attached spec is not the project's of the same name.
+    """
     if named is not None:
         return Found(program_of(named), f"{named}, as named by --spec")
     _refuse_no_log(trace)
@@ -48,15 +67,25 @@ def find_spec(
         if project is not None:
             _refuse_other_text(trace, program, project)
         return Found(program, f"{name}, attached to the trace (spec text sha256 {_short(program)})")
-    if project is None:
-        raise fault(
-            "V331",
-            trace,
-            f"no spec is attached to the trace, and no {PROJECT} is in this folder or above it",
-            f"name one with --spec, or write a {PROJECT} with `specs: [NAME.yaml]`",
-        )
-    path, why = _spec_of(project, trace)
+    claim = None if project is None else _spec_of(project, trace)
+    if project is None or claim is None:
+        return None
+    path, why = claim
     return Found(program_of(path), f"{path}, {why} {project.path}")
+
+
+def project_text(trace: Path, specs: Sequence[str], judged_by: str) -> str:
+    """A whole project file that says what a trace is judged by, to be written where one works."""
+    return "\n".join(
+        (
+            "specc: 1",
+            "kind: project",
+            "name: mine",
+            f"specs: [{', '.join(specs)}]",
+            "traces:",
+            f"  {_claim(_shown(trace.resolve()), judged_by)}",
+        )
+    )
 
 
 @final
@@ -134,7 +163,8 @@ def _refuse_other_text(trace: Path, program: Program, project: _Project) -> None
             )
 
 
-def _spec_of(project: _Project, trace: Path) -> tuple[Path, str]:
+def _spec_of(project: _Project, trace: Path) -> tuple[Path, str] | None:
+    """The spec that the project names for a trace, and why; None where it names none."""
     folder = project.path.parent
     for pattern, entry in project.spec.traces.items():
         # Path.glob refuses patterns that are absolute, which a user may well write.
@@ -143,13 +173,58 @@ def _spec_of(project: _Project, trace: Path) -> tuple[Path, str]:
             return folder / entry, f"since '{pattern}' names it in"
     if len(project.spec.specs) == 1:
         return folder / project.spec.specs[0], "the only spec of"
-    count = len(project.spec.specs)
-    raise fault(
+    return None
+
+
+def _no_project(trace: Path) -> SpecError:
+    here = Path.cwd()
+    files = sorted(path for path in (*here.glob("*.yaml"), *here.glob("specs/*.yaml")))
+    specs = [str(path.relative_to(here)) for path in files if _judges(path)] or ["NAME.yaml"]
+    return fault(
+        "V331",
+        trace,
+        f"no spec is attached to the trace, and no {PROJECT} is in this folder or above it",
+        f"name one with --spec, or write a {PROJECT} in this folder:\n"
+        f"{project_text(trace, specs, _likely(trace, specs))}",
+    )
+
+
+def _judges(path: Path) -> bool:
+    """Whether a file is a spec that a log may be judged by."""
+    try:
+        return isinstance(load(path).spec, BehaviorSpec | ArbiterSpec)
+    except SpecError:
+        return False
+
+
+def _unclaimed(project: _Project, trace: Path) -> SpecError:
+    folder, specs = project.path.parent.resolve(), project.spec.specs
+    resolved = trace.resolve()
+    place = resolved.relative_to(folder) if resolved.is_relative_to(folder) else resolved
+    claim = _claim(place, _likely(trace, specs))
+    entry = f"add this line under its `traces:`:\n  {claim}"
+    if not project.spec.traces:
+        entry = f"add these lines to it:\ntraces:\n  {claim}"
+    if not specs:
+        entry = entry.replace("add", "add `specs: [NAME.yaml]`, and", 1)
+    return fault(
         "V334",
         trace,
-        f"{project.path} names {count} specs, and none of its `traces:` patterns fits this trace",
-        "add a pattern under `traces:`, or name one with --spec",
+        f"{project.path} names {len(specs)} specs, and none of its `traces:` patterns fits this"
+        " trace",
+        f"name one with --spec, or {entry}",
     )
+
+
+def _claim(place: Path, spec: str) -> str:
+    """The line of a project file that says by which spec a trace is judged."""
+    return f"{json.dumps(place.as_posix(), ensure_ascii=False)}: {spec}"
+
+
+def _likely(trace: Path, specs: Sequence[str]) -> str:
+    """The spec whose name is in that of the trace; else the first."""
+    alike = [each for each in specs if PurePath(each).stem in trace.stem]
+    return max(alike, key=len, default=next(iter(specs), "NAME.yaml"))
 
 
 def _short(program: Program) -> str:

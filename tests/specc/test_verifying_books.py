@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from textwrap import dedent
 
 import numpy as np
 import pytest
@@ -10,9 +11,13 @@ import pytest
 from runtime.recording.scenario_run import recorded_run
 from specc.book.export import export_book
 from specc.book.folder import read_book
+from specc.book.loading import load_book
 from specc.cli import main
 from specc.loading import compile_scenario_spec
 from specc.scenarios.simulating import simulate_scenario
+from specc.verifying.book_matching import spec_held
+from specc.verifying.book_modules import pieces_of
+from specc.verifying.book_record import book_record
 from specc.verifying.book_verdict import verify_book
 from tests.specc.book_scenes import FILES, SCENARIO, laid_down
 
@@ -135,7 +140,7 @@ def test_logs_of_a_robot_with_half_the_gain_fail(
     assert main(["verify", *arguments, "--format", "json"]) == 1
     record = json.loads(capsys.readouterr().out)
     assert record["counts"] == {
-        "fails": 1, "lacks data": 1, "done": 0, "promises nothing": 0, "unusable": 0
+        "fails": 1, "lacks data": 1, "done": 0, "promises nothing": 0, "unusable": 0, "left out": 0
     }  # fmt: skip
 
 
@@ -146,9 +151,21 @@ def test_what_no_recording_holds_is_told_with_what_to_record(
     status = main(["verify", str(book), str(logs[0]), "--spec", str(home / "mapped.yaml")])
     said = " ".join(capsys.readouterr().out.split())
     assert status == 4
+    assert "nothing is recorded of choose: what to record stands in the book" in said
+    assert "pages/choose.html" in said
+    assert "show the arbiter these" not in said
+    assert said.endswith("1 of 2 modules done, 0 fail, 1 lacks data")
+
+
+def test_the_procedure_of_what_nobody_recorded_is_printed_on_request(
+    book: Path, home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log, mapped = logs_of(home, book, "asked", 1.0)[0], str(home / "mapped.yaml")
+    main(["verify", str(book), str(log), "--spec", mapped, "--procedures"])
+    said = " ".join(capsys.readouterr().out.split())
     assert "choose lacks data no recording holds it" in said
     assert "show the arbiter these" in said
-    assert "LACKS DATA 2 modules: " in said
+    assert "nothing is recorded of" not in said
 
 
 def test_a_recording_of_something_else_is_refused(
@@ -178,8 +195,103 @@ def test_reports_of_a_book_say_the_same_as_the_terminal(
     main(["verify", str(book), str(faithful[0]), *outputs])
     said = capsys.readouterr().out
     found = json.loads(record.read_text())
-    assert found["standing"] == ("done" if "DONE " in said else "lacks data")
+    assert found["standing"] == "lacks data"
     assert {each["node"] for each in found["modules"]} == {"index", "choose"}
-    assert "Every module" in page.read_text()
+    told = page.read_text()
+    assert "Every module" in told
+    assert said.strip().splitlines()[-1] in told
+    assert "lacks data</span>" in told
+    assert "inconclusive</span>" not in told.partition("<article")[0]
     for name in ("index", "choose"):
         assert f'<testsuite name="{name}"' in suite.read_text()
+
+
+def plain(log: Path, to: Path) -> Path:
+    """A log under the book's own names and in its units, somewhere else."""
+    rows = [line.split(",") for line in log.read_text().splitlines()[1:]]
+    own = [f"{t},{np.radians(float(angle)):.6f},{knob}" for t, angle, knob in rows]
+    to.parent.mkdir(parents=True, exist_ok=True)
+    to.write_text("\n".join(["time,bearing,gain", *own]) + "\n")
+    return to
+
+
+def test_logs_under_the_books_names_need_no_project_file(
+    book: Path, home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    logs = [plain(log, tmp_path / "runs" / log.name) for log in logs_of(home, book, "plain", 1.0)]
+    verdict = verify_book(book, logs, depth="verdict")
+    assert {e.piece.place.node: str(e.standing) for e in verdict.modules} == {
+        "index": "done",
+        "choose": "lacks data",
+    }
+    found = book_record(verdict)["modules"]
+    assert isinstance(found, list)
+    assert "its columns are those of face: bearing, gain" in found[0]["recordings"][0]["found_by"]
+
+
+def test_only_some_modules_may_be_judged(
+    book: Path, home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    logs = [plain(log, tmp_path / "runs" / log.name) for log in logs_of(home, book, "only", 1.0)]
+    arguments = ["verify", str(book), *map(str, logs), "--quick", "--only"]
+    assert main([*arguments, "index"]) == 0
+    assert capsys.readouterr().out.endswith("1 of 1 module done, 0 fail, 0 lack data, 1 left out\n")
+    assert main([*arguments, "turner.choose"]) == 4
+    assert "0 of 1 module done, 0 fail, 1 lacks data" in capsys.readouterr().out
+    assert main([*arguments, "indx"]) == 2
+    said = capsys.readouterr().err
+    assert "V444" in said
+    assert "did you mean 'index'?" in said
+
+
+def test_a_module_recorded_with_others_may_be_judged_alone(
+    book: Path, faithful: list[Path]
+) -> None:
+    verdict = verify_book(book, faithful[:1], depth="verdict", only=["choose"])
+    assert [each.piece.place.node for each in verdict.modules] == ["choose"]
+    assert verdict.modules[0].members
+    assert verdict.left_out == 1
+
+
+def test_a_log_that_holds_no_modules_names_is_told_what_is_missing(
+    book: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run.csv").write_text("time,far,decided\n0,1,calm\n0.1,1,calm\n")
+    assert main(["verify", str(book), "run.csv"]) == 2
+    said = " ".join("".join(capsys.readouterr()).split())
+    assert "V442" in said
+    assert "of eager, the nearest, choice is missing" in said
+    assert "columns: time, far, decided" in said
+
+
+def test_of_several_modules_that_fit_the_files_name_decides(
+    book: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    header = "time,bearing,gain,far,choice\n"
+    rows = "".join(f"{0.1 * k:.1f},0.1,1,3,eager\n" for k in range(60))
+    for name in ("run.csv", "face_1.csv", "choose-2.csv"):
+        (tmp_path / name).write_text(header + rows)
+    loaded = load_book(book)
+    pieces = [p for made, _ in loaded.architectures for p in pieces_of(made)]
+    assert spec_held(loaded, Path("face_1.csv"), pieces).program.name == "face"
+    assert spec_held(loaded, Path("choose-2.csv"), pieces).program.name == "eager"
+    assert main(["verify", str(book), "run.csv"]) == 2
+    said = capsys.readouterr()
+    assert "V443" in said.out + said.err
+    _, _, snippet = (said.out + said.err).partition("that is meant:\n")
+    Path("specc.yaml").write_text(dedent("\n".join(snippet.splitlines()[:6])))
+    main(["verify", str(book), "run.csv", "--only", "index"])
+    assert "since 'run.csv' names it in specc.yaml" in capsys.readouterr().err
+
+
+def test_several_specs_are_refused(
+    book: Path, home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mapped = str(home / "mapped.yaml")
+    assert main(["verify", str(book), "x.csv", "--spec", mapped, "--spec", mapped]) == 2
+    assert "--spec: name one spec" in capsys.readouterr().err
