@@ -13,10 +13,11 @@ from spec_schema.diagnostics import Diagnostic
 from specc import loading
 from specc.book.manifest import ARTIFACTS, Setting
 from specc.book.origins import renamed
+from specc.book.rehearsing import trial_of
 from specc.book.settings import DEFAULT, settings_of
 from specc.book.sources import Sources, sources_of
 from specc.book.tables import Sheet, sheets_of
-from specc.book.trials import NO_TRIAL, Trial, trial_of
+from specc.book.trials import NO_TRIAL, Trial
 from specc.book.views import Decisions, View, decisions_at, views_at
 from specc.faults import fault
 from specc.scenarios.simulating import Simulation, simulate_scenario
@@ -157,7 +158,7 @@ def drawn(
     nodes = []
     for done, node in enumerate(architecture.nodes):
         progress(f"looking at {node.name}", done, len(architecture.nodes))
-        trial = trial_of(architecture, node)
+        trial = trial_of(architecture, body, node)
         nodes.append(replace(_shown(architecture, node), trial=trial))
     return Drawn(architecture, body, notes, robots, tuple(nodes))
 

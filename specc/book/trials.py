@@ -3,11 +3,6 @@
 from dataclasses import dataclass
 from typing import Final, final
 
-from runtime.architecture import Architecture, Node
-from runtime.user_code import UserCodeError
-from spec_schema.diagnostics import SpecError
-from verifier.procedure.behavior import procedure_of
-from verifier.procedure.bench import bench_test
 from verifier.procedure.bench_model import BenchTest
 from verifier.procedure.model import Procedure
 
@@ -23,19 +18,3 @@ class Trial:
 
 
 NO_TRIAL: Final = Trial(None, None, "nothing is promised that could be tested")
-
-
-def trial_of(architecture: Architecture, node: Node) -> Trial:
-    """How a node is tested, rehearsed."""
-    if node.behavior >= 0:
-        try:
-            return Trial(procedure_of(architecture.programs[node.behavior]), None, "")
-        except SpecError as error:
-            return Trial(None, None, error.diagnostics[0].message)
-    if node.arbiter < 0:
-        return NO_TRIAL
-    try:
-        test = bench_test(architecture.arbiters[node.arbiter], node.period)
-    except UserCodeError as error:
-        return Trial(None, None, str(error))
-    return NO_TRIAL if test is None else Trial(None, test, "")

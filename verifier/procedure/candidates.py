@@ -4,6 +4,7 @@ Drawn by an additive recurrence (Roberts, The unreasonable effectiveness of quas
 2018), so that the same spec always has the same procedure, and rounded to what people can set.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -25,20 +26,34 @@ STAGE_HORIZONS: Final = 3.0
 SHUFFLES: Final = 17.0
 """Of one number drawn, the digits beyond this decide whether a value beside a threshold is held."""
 STEPS: Final = 50.0
-"""A range is divided into about so many round steps."""
+"""A range is divided into so many round steps at most."""
 
 
-def candidates(program: Program, fidelity: Fidelity, count: int, every: float) -> Plans:
-    """So many runs; a stage is a whole number of samples `every` so many seconds."""
+def candidates(
+    program: Program,
+    fidelity: Fidelity,
+    levels: Mapping[str, tuple[float, ...]],
+    count: int,
+    every: float,
+    slower: float = 1.0,
+) -> Plans:
+    """So many runs; a stage is a whole number of samples `every` so many seconds.
+
+    slower: so many times as long a stage lasts as it needs to.
+    levels: the values (SI) of controls that are held at these alone.
+    """
     parts: tuple[State | Control, ...] = (*program.states, *program.controls)
     inputs = inputs_of(program)
     stages = STAGES if inputs.any() else 1
-    seconds = STAGE_HORIZONS * fidelity.horizon * STAGES / stages
+    seconds = slower * STAGE_HORIZONS * fidelity.horizon * STAGES / stages
     drawn = evenly(count, (stages + 1) * len(parts)).reshape(count, stages + 1, len(parts))
-    values = np.stack(
-        [_spread(program, each, drawn[..., i], fidelity) for i, each in enumerate(parts)],
-        axis=-1,
-    )
+    columns = [
+        _of_levels(levels[each.name], drawn[..., i])
+        if each.name in levels
+        else _spread(program, each, drawn[..., i], fidelity)
+        for i, each in enumerate(parts)
+    ]
+    values = np.stack(columns, axis=-1)
     whole = float(np.ceil(seconds / every - 1e-9)) * every
     n = len(program.states)
     return Plans(values[:, 0, :n], values[:, 1:], inputs, whole)
@@ -51,6 +66,11 @@ def evenly(count: int, axes: int) -> Array:
         ratio = (1.0 + ratio) ** (1.0 / (axes + 1.0))
     alpha = ratio ** -np.arange(1.0, axes + 1.0)
     return frozen(np.mod(0.5 + np.outer(np.arange(1.0, count + 1.0), alpha), 1.0))
+
+
+def _of_levels(levels: Sequence[float], share: Array) -> Array:
+    """Shares of the unit interval as one of these values."""
+    return np.asarray(levels)[np.floor(share * len(levels)).astype(np.int64)]
 
 
 def _spread(program: Program, part: State | Control, share: Array, fidelity: Fidelity) -> Array:
@@ -84,7 +104,8 @@ def _three_digits(value: float, scale: float) -> float:
 
 
 def rounded(values: Array, width: float, scale: float) -> Array:
-    """Values (SI) at round numbers of their own unit, of which `width` has about fifty."""
-    step = 10.0 ** np.floor(np.log10(width / scale / STEPS))
-    step *= 5.0 if width / scale / step > 5.0 * STEPS else 1.0
+    """Values (SI) at round numbers of their own unit, of which `width` has fifty at most."""
+    least = width / scale / STEPS
+    decade = 10.0 ** np.floor(np.log10(least))
+    step = decade * next(k for k in (1.0, 2.0, 5.0, 10.0) if k * decade >= least * (1.0 - 1e-9))
     return np.asarray(np.round(values / scale / step) * step * scale)

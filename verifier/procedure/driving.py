@@ -77,15 +77,14 @@ def inputs_of(program: Program) -> Booleans:
 def driven_paths(program: Program, plans: Plans, every: float, seed: int) -> Paths:
     """Drive every run, with a sample `every` so many seconds; seed: of the program's own noise."""
     n, stages = len(program.states), plans.held.shape[1]
-    moving = ramped(program)
-    ramps = np.flatnonzero([s.name + RAMP in moving.register for s in program.states])
+    moving, ramps = ramped(program), ramps_of(program)
     state, parts, switched = plans.start.copy(), [], []
     dead = np.zeros(len(state), dtype=np.bool_)
     alive = np.zeros(len(state), dtype=np.int64)
     for k in range(stages):
         held = plans.held[:, k]
-        state = _inside(program, _steps_taken(program, plans, ramps, state, held))
-        controls = _controls(program, ramps, state, held, plans.seconds)
+        state = within_domain(program, steps_taken(program, plans, ramps, state, held))
+        controls = controls_in_stage(program, ramps, state, held, plans.seconds)
         starts = dict(zip([s.name for s in program.states], state.T, strict=True))
         rollout = simulate(moving, starts, plans.seconds, controls, every, seed=seed + k)
         switched.append(_ways(program, rollout, k * plans.seconds))
@@ -99,10 +98,12 @@ def driven_paths(program: Program, plans: Plans, every: float, seed: int) -> Pat
         state = np.where(np.isfinite(rollout.ended_in), rollout.ended_in, state)
     register = np.concatenate(parts, axis=1)
     ways = np.concatenate(switched, axis=0)
-    return _paths(program, register, float(rollout.times[1]), alive, ways)
+    return paths_until(program, register, float(rollout.times[1]), alive, ways)
 
 
-def _paths(program: Program, register: Array, period: float, alive: Integers, ways: Array) -> Paths:
+def paths_until(
+    program: Program, register: Array, period: float, alive: Integers, ways: Array
+) -> Paths:
     """The paths, each until its state left its domain or its mode changed again at once."""
     ends = np.minimum(alive * period, _at_once(ways, len(alive), SHORT * period))
     counts = np.zeros((len(alive), len(program.field.guards)), dtype=np.int64)
@@ -127,7 +128,14 @@ def ramped(program: Program) -> Program:
     return replace(program, states=tuple(states), controls=(*program.controls, *rates))
 
 
-def _steps_taken(
+def ramps_of(program: Program) -> Integers:
+    """The places of the states that are moved evenly."""
+    inputs = inputs_of(program)[: len(program.states)]
+    smooth = [state.kind is not Kind.DISCRETE for state in program.states]
+    return np.flatnonzero(inputs & np.array(smooth))
+
+
+def steps_taken(
     program: Program, plans: Plans, ramps: Integers, state: Array, held: Array
 ) -> Array:
     """The states (C, n) at the start of a stage: what is discrete jumps, what is moved goes on."""
@@ -137,7 +145,7 @@ def _steps_taken(
     return np.where(jumps, held[:, :n], state)
 
 
-def _controls(
+def controls_in_stage(
     program: Program, ramps: Integers, state: Array, held: Array, seconds: float
 ) -> dict[str, Array]:
     """What is set in a stage (C,): the controls, and how fast each quantity is moved."""
@@ -151,7 +159,7 @@ def _controls(
     return controls
 
 
-def _inside(program: Program, states: Array) -> Array:
+def within_domain(program: Program, states: Array) -> Array:
     """States (C, n) that rounding put outside their domain, at its edge."""
     columns = [_clipped(s, states[:, i]) for i, s in enumerate(program.states)]
     return np.stack(columns, axis=-1)

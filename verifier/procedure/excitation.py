@@ -1,6 +1,6 @@
 """Whether the runs excite each control and each sensed quantity so that its effect can be told."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Final
 
@@ -19,16 +19,22 @@ SEED: Final = 11
 
 
 def effects_of(
-    program: Program, fidelity: Fidelity, plans: Plans, every: float
+    program: Program,
+    fidelity: Fidelity,
+    plans: Plans,
+    every: float,
+    held: Collection[str] = (),
 ) -> dict[str, Array]:
     """By input that the field reads, (C,) by how many tolerances it moves what is judged.
+
+    held: controls that are not to be varied.
 
     From each start the behavior is predicted over one horizon with the input at one end of what
     the plans hold it at, and at the other, all else as planned.
     """
     read = names_read(program)
     names = program.register
-    places = [int(i) for i in np.flatnonzero(plans.inputs) if names[i] in read]
+    places = [int(i) for i in np.flatnonzero(plans.inputs) if names[i] in read - set(held)]
     return {names[place]: _effect(program, fidelity, plans, every, place) for place in places}
 
 

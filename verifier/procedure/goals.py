@@ -5,7 +5,7 @@ the coverage, at low, usual and high values of each input, in each value of what
 each way out of a mode. Letters: C runs, G goals.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, final
 
@@ -54,8 +54,13 @@ def judged_samples(horizon: float, every: float) -> float:
     return LEAST * CLUSTER_HORIZONS * horizon / every
 
 
-def goals_of(program: Program, fidelity: Fidelity, paths: Paths) -> Goals:
-    """What these runs provide; one in which hardly a window fits provides nothing."""
+def goals_of(
+    program: Program, fidelity: Fidelity, paths: Paths, held: Collection[str] = ()
+) -> Goals:
+    """What these runs provide; one in which hardly a window fits provides nothing.
+
+    held: controls that are not to be varied.
+    """
     every = float(paths.times[1])
     fits = paths.alive * every >= SHORTEST * fidelity.horizon
     paths = replace(paths, alive=np.where(fits, paths.alive, 0), taken=paths.taken * fits[:, None])
@@ -65,7 +70,7 @@ def goals_of(program: Program, fidelity: Fidelity, paths: Paths) -> Goals:
     has_region = bool(fidelity.region) and fidelity.coverage > 0.0
     told = {axis.name for axis in axes} if has_region else set()
     parts = [_Part(in_cell, float(ENOUGH + SPARE), ("",) * in_cell.shape[1])] if has_region else []
-    for axis in _single_axes(program, axes, told):
+    for axis in _single_axes(program, axes, told | set(held)):
         least = judged_samples(fidelity.horizon, every) if axis.values else fidelity.horizon / every
         values = tuple(_told(axis, k) for k in range(axis.count))
         parts.append(_Part(_counts((axis,), columns, paths, 1), least, values))

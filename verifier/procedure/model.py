@@ -113,12 +113,27 @@ class Rehearsal:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Lateness:
+    """What the timing of the robot that it was rehearsed with takes up of the tolerances.
+
+    period, response_time: seconds. share: of a tolerance, at worst in these runs. slower: a robot
+    so many times later breaks a tolerance by that alone; 0 where none that was tried does.
+    """
+
+    period: float
+    response_time: float
+    share: float
+    slower: float
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Procedure:
     """What to record of one behavior.
 
     rate: samples a second. horizon: seconds. required: the share of cells that must be seen, 0
-    where the spec demands none. units: of every state and control. remarks: sentences on what the
-    runs leave open. rehearsal: None where the procedure was not rehearsed.
+    where the spec demands none. lateness: None of a robot that follows at once. remarks: sentences
+    on what the runs leave open. rehearsal: None where the procedure was not rehearsed.
     """
 
     name: str
@@ -128,6 +143,7 @@ class Procedure:
     signals: tuple[Signal, ...]
     excited: tuple[Excitation, ...]
     required: float
+    lateness: Lateness | None
     remarks: tuple[str, ...]
     rehearsal: Rehearsal | None
 

@@ -11,14 +11,18 @@ from typing import Final, final
 
 import numpy as np
 
-from runtime.arrays import Array
+from runtime.arrays import Array, Integers
 from runtime.code import Code
 from runtime.program import Program, Term
+from verifier.fidelity.judging.part_means import CLUSTER_HORIZONS
+from verifier.fidelity.judging.parts import LEAST
 from verifier.fidelity.judging.sentences import times_more
 from verifier.fidelity.together import pooled
 from verifier.fidelity.verify import Judgement, fidelity_of, judgement_of
 from verifier.procedure.driving import Paths, Plans, driven_paths
 from verifier.procedure.model import Planted, Rehearsal, Signal
+from verifier.procedure.robot import Robot
+from verifier.procedure.sampled import sampled_paths
 from verifier.report.report import Report, Standing, Verdict
 from verifier.traces.trace import Series, Trace
 
@@ -35,6 +39,10 @@ SPARE: Final = 1.3
 FASTEST: Final = 8.0
 """By which repeats grow at once."""
 SEEDS_APART: Final = 1000
+OTHER_SEEDS: Final = (100007, 200007)
+"""Of rehearsals on other days."""
+PLENTY: Final = 24
+"""So many recordings are not rehearsed again."""
 TRIES: Final = 4
 """So often a push is corrected until it carries that far."""
 
@@ -42,10 +50,16 @@ TRIES: Final = 4
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Staging:
-    """What is rehearsed: plans of C runs, sampled `every` seconds."""
+    """What is rehearsed: plans of C runs that last (C,) seconds, sampled `every` seconds.
+
+    program: that is judged by. near: the same within the reach of the sensors, which drives.
+    """
 
     program: Program
+    near: Program
+    robot: Robot
     plans: Plans
+    lasts: Array
     signals: tuple[Signal, ...]
     every: float
     seed: int
@@ -56,27 +70,51 @@ def rehearsed(staging: Staging, names: Sequence[str]) -> tuple[int, Rehearsal]:
 
     names: the variables along which a robot is pushed, each in turn.
     """
-    repeats, judgements = 1, _judgements(staging, staging.program, range(1))
+    repeats = _fewest(staging)
+    judgements = _judgements(staging, staging.near, range(repeats))
     report = _together(staging, judgements)
     while report.verdict is Verdict.INCONCLUSIVE:
         more = _repeats(repeats, report, len(staging.plans.start))
         if more <= repeats:
             break
-        judgements += _judgements(staging, staging.program, range(repeats, more))
+        judgements += _judgements(staging, staging.near, range(repeats, more))
         repeats, report = more, _together(staging, judgements)
     planted = tuple(_planted(staging, name, repeats) for name in names)
     most = min(ENOUGH, MOST_RECORDINGS // len(staging.plans.start))
-    while report.verdict is Verdict.PASS and not all(map(_is_caught, planted)):
+    while report.verdict is Verdict.PASS and not (
+        all(map(_is_caught, planted)) and _again(staging, names, repeats)
+    ):
         more = 2 * repeats
         if more > most:
             break
-        judgements += _judgements(staging, staging.program, range(repeats, more))
+        judgements += _judgements(staging, staging.near, range(repeats, more))
         repeats, report = more, _together(staging, judgements)
         planted = tuple(_planted(staging, name, repeats) for name in names)
     coverage = report.coverage
     share = 0.0 if coverage is None else coverage.share
     judged = report.trace.judged
     return repeats, Rehearsal(report.verdict, share, judged, report.reasons, planted)
+
+
+def _fewest(staging: Staging) -> int:
+    """So often that twice what the smallest judged part needs is there: real robots are worse."""
+    horizon = max(fidelity_of(staging.program).horizon, staging.program.field.every)
+    wanted = 2.0 * LEAST * CLUSTER_HORIZONS * horizon
+    return int(np.ceil(wanted / max(float(np.sum(staging.lasts)), staging.every)))
+
+
+def _again(staging: Staging, names: Sequence[str], repeats: int) -> bool:
+    """Whether other days would have given the same verdicts; many recordings are sure to."""
+    if repeats * len(staging.plans.start) > PLENTY:
+        return True
+    for seed in OTHER_SEEDS:
+        other = replace(staging, seed=seed)
+        report = _together(other, _judgements(other, other.near, range(repeats)))
+        if report.verdict is not Verdict.PASS:
+            return False
+        if not all(_is_caught(_planted(other, name, repeats)) for name in names):
+            return False
+    return True
 
 
 def _repeats(repeats: int, report: Report, runs: int) -> int:
@@ -100,10 +138,23 @@ def _judgements(staging: Staging, robot: Program, repeats: range) -> list[Judgem
     """Of each run where `robot` drives, and the spec is the staging's program."""
     again = np.tile(np.arange(len(staging.plans.start)), len(repeats))
     seed = staging.seed + SEEDS_APART * repeats.start
-    paths = driven_paths(robot, staging.plans.part(again), staging.every, seed)
+    paths = _driven(staging, robot, again, seed)
     spec, rng = _plainly_logged(staging.program), np.random.default_rng(seed)
     traces = [_trace(staging, paths, c, rng) for c in range(len(again)) if paths.alive[c] > 1]
     return [replace(judgement_of(spec, each), study=None) for each in traces]
+
+
+def _driven(staging: Staging, program: Program, runs: Integers, seed: int) -> Paths:
+    """Some of the runs, driven by a robot with this field and the staging's timing and sensors."""
+    plans, every = staging.plans.part(runs), staging.every
+    if staging.robot.is_prompt or program.field.is_map:
+        paths = driven_paths(program, plans, every, seed)
+    else:
+        told = {each.name: each.noise for each in staging.signals}
+        noise = np.array([told.get(state.name, 0.0) for state in program.states])
+        paths = sampled_paths(program, plans, staging.robot, every, seed, noise)
+    most = np.floor(staging.lasts[runs] / every + 1e-9).astype(np.int64) + 1
+    return replace(paths, alive=np.minimum(paths.alive, most))
 
 
 def _plainly_logged(program: Program) -> Program:
@@ -128,7 +179,7 @@ def _planted(staging: Staging, name: str, repeats: int) -> Planted:
     """A robot that is pushed along one variable."""
     tolerance = fidelity_of(staging.program).tolerance[name]
     push, carried = _push(staging, name, FORBIDDEN * tolerance)
-    robot = pushed(staging.program, name, push)
+    robot = pushed(staging.near, name, push)
     report = _together(staging, _judgements(staging, robot, range(repeats)))
     named = [r.name for r in report.variables if r.standing is Standing.EXCEEDED]
     return Planted(name, push, carried, report.verdict, name in named)
@@ -155,7 +206,7 @@ def _carried(staging: Staging, name: str, push: float, horizon: float) -> float:
     short = replace(staging.plans, held=staging.plans.held[:, :1], seconds=samples * staging.every)
     ends = [
         _at_end(driven_paths(robot, short, staging.every, staging.seed), name, staging.program)
-        for robot in (staging.program, pushed(staging.program, name, push))
+        for robot in (staging.near, pushed(staging.near, name, push))
     ]
     apart = np.abs(ends[1] - ends[0])
     apart = apart[np.isfinite(apart)]

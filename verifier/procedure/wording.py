@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from runtime.program import Unit
-from verifier.procedure.model import Drive, Excitation, Planted, Procedure, Signal, Stage
+from verifier.procedure.model import Drive, Excitation, Lateness, Planted, Procedure, Signal, Stage
 from verifier.report.wording import exact, listed, number, percent, quantity, seconds
 
 
@@ -104,12 +104,31 @@ def rehearsal_sentences(procedure: Procedure) -> tuple[str, ...]:
         region = (
             f" ({percent(found.share)} of the region seen, {percent(procedure.required)} asked)"
         )
+    late = procedure.lateness
+    timed = ""
+    if late is not None:
+        timed = f" that reads every {seconds(late.period)}"
+        timed += f" and acts {seconds(late.response_time)} later" if late.response_time else ""
     told = (
-        f"rehearsed in simulation with that noise, a faithful robot gets"
+        f"rehearsed in simulation with that noise, a faithful robot{timed} gets"
         f" {found.verdict.upper()}{region}"
     )
     units = {each.name: each.unit for each in procedure.signals}
-    return (told, *(_planted(each, units[each.variable]) for each in found.planted))
+    timing = () if late is None else (lateness_sentence(late),)
+    return (told, *timing, *(_planted(each, units[each.variable]) for each in found.planted))
+
+
+def lateness_sentence(late: Lateness) -> str:
+    """What lateness is borne."""
+    if late.share >= 1.0:
+        return "being so late alone breaks a tolerance in these runs: build it faster"
+    told = f"being so late alone takes up {percent(late.share)} of a tolerance at worst"
+    if not late.slower:
+        return told
+    later = f"reading every {seconds(late.slower * late.period)}"
+    if late.response_time:
+        later += f" and acting {seconds(late.slower * late.response_time)} later"
+    return f"{told}; {later} would break it"
 
 
 def _planted(each: Planted, unit: Unit) -> str:
