@@ -61,7 +61,7 @@ def _module(made: Architecture, shown: Shown, names: Names) -> Module:
         choices=tuple(_choices(made, node)),
         settings=shown.settings,
         tables=tuple(map(_table, shown.sheets)),
-        data=names.data(made, node) if shown.sheets else (),
+        data=_data(made, shown, names),
         figures=names.figures(made, shown),
         faithful=_faithful(program),
         agreement=agreement.share if agreement is not None else None,
@@ -69,6 +69,14 @@ def _module(made: Architecture, shown: Shown, names: Names) -> Module:
         evidence=feasible.evidence if feasible else "",
         trial=shown.trial,
     )
+
+
+def _data(made: Architecture, shown: Shown, names: Names) -> tuple[str, ...]:
+    """Its tables, and the runs of its test procedure."""
+    tables = names.data(made, shown.node) if shown.sheets else ()
+    procedure = shown.trial.procedure
+    has_runs = procedure is not None and bool(procedure.drives)
+    return (*tables, names.procedure(made, shown.node)) if has_runs else tables
 
 
 def _state(state: State) -> Quantity:

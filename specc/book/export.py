@@ -16,6 +16,7 @@ from specc.book.reader import READER, reader_text
 from specc.book.tables import as_csv, as_npz
 from specc.book.typesetting.pdf import require_typst, typeset
 from specc.book.words.all import chapters_of
+from specc.book.words.legs import as_rows
 from specc.pages.book_page import book_pages
 
 PDF: Final = "book.pdf"
@@ -99,6 +100,9 @@ def _data(contents: Contents, names: Names) -> dict[str, bytes]:
                 npz, text = names.data(of.architecture, shown.node)
                 found[npz] = as_npz(shown.sheets)
                 found[text] = as_csv(shown.sheets)
+            procedure = shown.trial.procedure
+            if procedure is not None and procedure.drives:
+                found[names.procedure(of.architecture, shown.node)] = as_rows(procedure)
     return found
 
 

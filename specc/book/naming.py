@@ -40,6 +40,10 @@ class Names:
         """The tables of a node."""
         return tuple(f"data/{self.stem(made, node)}{kind}" for kind in (".npz", ".csv"))
 
+    def procedure(self, made: Architecture, node: Node) -> str:
+        """The runs of its test procedure, for programs."""
+        return f"data/{self.stem(made, node)}.procedure.csv"
+
     def portrait(self, made: Architecture, node: Node, count: int) -> str:
         """The figure of a node's portrait of that number."""
         return f"{self.stem(made, node)}-{count + 1}"

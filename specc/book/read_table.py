@@ -1,4 +1,7 @@
-"""Reads a table of this book: `value("avoid.npz", "rate heading", {"left": 1, "side": 0})`."""
+"""Reads tables of this book; each page of a behavior has an example under "The same as numbers".
+
+Where modes differ, a table is of one mode: its quantity is called `rate heading in to_left`.
+"""
 
 import numpy as np
 

@@ -91,11 +91,27 @@ class Planted:
 
 @final
 @dataclass(frozen=True, slots=True)
+class WayTime:
+    """By how much (s) a change of mode may be early or late, on average, in these runs.
+
+    count: how often the faithful robot takes this way in them. basis: what `allowed` follows from,
+    as a phrase.
+    """
+
+    source: str
+    target: str
+    count: int
+    allowed: float
+    basis: str
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class Rehearsal:
     """What the verifier says of the procedure where the spec itself drives, with noisy sensors.
 
     share: of the cells of the coverage, how many were seen. judged: seconds. reasons: of the
-    verdict.
+    verdict. ways: what is asked of changes of mode.
     """
 
     verdict: Verdict
@@ -103,6 +119,7 @@ class Rehearsal:
     judged: float
     reasons: tuple[str, ...]
     planted: tuple[Planted, ...]
+    ways: tuple[WayTime, ...]
 
     @property
     def decides(self) -> bool:

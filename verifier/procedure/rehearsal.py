@@ -20,10 +20,11 @@ from verifier.fidelity.judging.sentences import times_more
 from verifier.fidelity.together import pooled
 from verifier.fidelity.verify import Judgement, fidelity_of, judgement_of
 from verifier.procedure.driving import Paths, Plans, driven_paths
-from verifier.procedure.model import Planted, Rehearsal, Signal
+from verifier.procedure.model import Planted, Rehearsal, Signal, WayTime
 from verifier.procedure.robot import Robot
 from verifier.procedure.sampled import sampled_paths
 from verifier.report.report import Report, Standing, Verdict
+from verifier.report.switching import Timing
 from verifier.traces.trace import Series, Trace
 
 FORBIDDEN: Final = 2.0
@@ -93,7 +94,23 @@ def rehearsed(staging: Staging, names: Sequence[str]) -> tuple[int, Rehearsal]:
     coverage = report.coverage
     share = 0.0 if coverage is None else coverage.share
     judged = report.trace.judged
-    return repeats, Rehearsal(report.verdict, share, judged, report.reasons, planted)
+    ways = _way_times(judgements)
+    return repeats, Rehearsal(report.verdict, share, judged, report.reasons, planted, ways)
+
+
+def _way_times(judgements: Sequence[Judgement]) -> tuple[WayTime, ...]:
+    """What is asked of each way out of a mode that was taken, on average over its switches."""
+    timed: dict[tuple[str, str], list[Timing]] = {}
+    for each in judgements:
+        for way in each.switching.ways if each.switching is not None else ():
+            if way.timing is not None and np.isfinite(way.timing.allowed):
+                timed.setdefault((way.source, way.target), []).append(way.timing)
+    found = []
+    for (source, target), several in timed.items():
+        counts = [timing.count for timing in several]
+        allowed = float(np.average([timing.allowed for timing in several], weights=counts))
+        found.append(WayTime(source, target, sum(counts), allowed, several[0].basis))
+    return tuple(found)
 
 
 def _fewest(staging: Staging) -> int:

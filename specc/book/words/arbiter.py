@@ -44,7 +44,7 @@ def arbiter_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
         Section("What each choice does", tuple(_choices(made, node, names))),
         _when(made, node, names),
         _faithful(arbiter),
-        bench_section(shown),
+        bench_section(shown.trial),
         spec_section(arbiter.source),
         *([spec_section(arbiter.plan.source, "The spec of its plan")] if arbiter.plan else []),
     )

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from runtime.architecture import Architecture, Node
-from runtime.program import Guard, Program, Role, State
+from runtime.program import Guard, Kind, Program, Role, State
 from specc.book.chapters import (
     Block,
     Bullets,
@@ -19,16 +19,17 @@ from specc.book.contents import Drawn, Shown
 from specc.book.formulas import in_mode, labels_of, of_tree, plain, written
 from specc.book.naming import Names
 from specc.book.tables import per_second
-from specc.book.words.acting import acting_section, timing_sentences
+from specc.book.words.acting import acting_section
 from specc.book.words.data import data_section
 from specc.book.words.declared import constants_table, controls_table
 from specc.book.words.faithful import faithful_section
-from specc.book.words.quantities import NOTHING, SECOND, exact, range_of, unit_of
+from specc.book.words.quantities import NOTHING, SECOND, exact, listed, range_of, unit_of
 from specc.book.words.source import author_words, conditions_of, formulas_of, spec_section
 from specc.book.words.testing import procedure_section
 from specc.book.words.topology import topology_blocks
 from specc.book.words.wiring import source_of, value_of
 from specc.figures.quantities import rate_of
+from verifier.fidelity.stretches.needs import names_guarded, names_read
 
 ROLES = {
     Role.SENSED: "sensed",
@@ -43,15 +44,15 @@ def behavior_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
     program = made.programs[node.behavior]
     called = "" if program.name == node.name else f" Its spec calls it `{program.name}`."
     sections = (
-        _purpose(program, node, called),
+        _purpose(program, called),
         Section("State variables", tuple(_states(program, made, node, names))),
         Section("Control interface", tuple(_controls(program, made, node, names))),
-        Section("The field", tuple(_field(program))),
+        Section("The field", tuple(_field(program, node))),
+        acting_section(of, node, names),
+        faithful_section(program, shown.trial),
+        procedure_section(program, shown.trial, names.procedure(made, node)),
         data_section(of, shown, names),
         Section("Phase portraits", tuple(_portraits(program, shown, made, names))),
-        acting_section(of, node, names),
-        faithful_section(program),
-        procedure_section(shown),
         spec_section(program.source),
     )
     return Chapter(
@@ -63,14 +64,14 @@ def behavior_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
     )
 
 
-def _purpose(program: Program, node: Node, called: str) -> Section:
+def _purpose(program: Program, called: str) -> Section:
     blocks: list[Block] = [Paragraph(words) for words in author_words(program.source.text)]
     moved = [s for s in program.states if s.is_driven and s.name != program.field.mode]
     names = ", ".join(f"`{state.name}`" for state in moved)
     blocks.append(
         Paragraph(
             f"It is to move {names} as this page says, whatever sensors, motors and programs bring"
-            f" that about.{called} {timing_sentences(node)}"
+            f" that about.{called}"
         )
     )
     return Section("What it does", tuple(blocks))
@@ -89,6 +90,7 @@ def _states(program: Program, made: Architecture, node: Node, names: Names) -> I
     )
     yield Table(("state", "relates", "range", "role", "comes from"), rows)
     told = [f"`{state.name}`: {state.about}." for state in program.states if state.about]
+    told += _zeros(program)
     if told:
         yield Bullets(tuple(told))
     closures = tuple(
@@ -102,6 +104,17 @@ def _states(program: Program, made: Architecture, node: Node, names: Names) -> I
             " author assumes of it:"
         )
         yield Formulas(closures)
+
+
+def _zeros(program: Program) -> list[str]:
+    """What may be measured from anywhere."""
+    read = names_read(program) | names_guarded(program)
+    return [
+        f"`{state.name}`: only its changes count, since no formula reads it. Measure it from any"
+        " direction that stays the same."
+        for state in program.states
+        if state.kind is Kind.PERIODIC and state.name not in read
+    ]
 
 
 def _relates(state: State) -> str:
@@ -142,7 +155,7 @@ def _remark(unit: str, about: str) -> str:
     return "; ".join((*told, *([about] if about else [])))
 
 
-def _field(program: Program) -> Iterator[Block]:
+def _field(program: Program, node: Node) -> Iterator[Block]:
     field = program.field
     if field.formula is None:
         yield Paragraph(
@@ -150,7 +163,7 @@ def _field(program: Program) -> Iterator[Block]:
             " tables of this book, and how it looks is in the portraits below."
         )
     elif field.mode:
-        yield from _modes(program)
+        yield from _modes(program, node)
     else:
         yield Formulas(tuple(_rates(program)))
     if field.is_map:
@@ -198,21 +211,31 @@ def _rates(program: Program, index: int = -1) -> Iterator[tuple[str, str, str]]:
         yield (left, right, f"in {unit}" if unit not in {"", "1"} else "")
 
 
-def _modes(program: Program) -> Iterator[Block]:
+def _modes(program: Program, node: Node) -> Iterator[Block]:
     field = program.field
     mode = next(s for s in program.states if s.name == field.mode)
     values = mode.values
     yield Paragraph(
         f"It has a memory: `{field.mode}` is the mode that it is in, one of"
-        f" {', '.join(f'`{v}`' for v in values)}. Each mode has a field of its own, and is left as"
-        " soon as one of its conditions holds; between two ticks too. It begins in"
-        f" {value_of(mode, mode.hold)}, where nothing else is said."
+        f" {', '.join(f'`{v}`' for v in values)}. Each mode has a field of its own, and is left"
+        f" {_leaving(program, node)}. It begins in {value_of(mode, mode.hold)}, where nothing else"
+        " is said."
     )
     for index, value in enumerate(values):
         yield Heading(f"While `{field.mode}` is `{value}`")
         yield Formulas(tuple(_rates(program, index)))
         ways = tuple(mode_ways(program, index, values))
         yield Bullets(ways or ("It is never left.",))
+
+
+def _leaving(program: Program, node: Node) -> str:
+    """When conditions are looked at: also between ticks where it is on states of its own."""
+    moved = names_guarded(program) & set(program.field.driven) - {program.field.mode}
+    own = sorted(name for name in moved if all(wire.entry != name for wire in node.inputs))
+    told = "at the first tick at which one of its conditions holds of what was read then"
+    if not own:
+        return told
+    return f"{told}; {listed(f'`{n}`' for n in own)}, its own, may make one hold between ticks, too"
 
 
 def mode_ways(program: Program, index: int, values: tuple[str, ...]) -> Iterator[str]:

@@ -23,8 +23,8 @@ def data_section(of: Drawn, shown: Shown, names: Names) -> Section:
         Paragraph(
             f"[{text}]({text}) and [{npz}]({npz}) hold the field and the outputs as tables, in the"
             " spec's own units, for the values of the controls that this architecture sets."
-            " Between the nodes go on linearly, each axis after the other, as"
-            " [data/read_table.py](data/read_table.py) does in ten lines:"
+            " Elsewhere the formulas count. Between the nodes go on linearly, each axis"
+            " after the other, as [data/read_table.py](data/read_table.py) does in ten lines:"
         ),
         Listing(_example(npz, shown.sheets[0]), "python"),
         Table(("quantity", "setting", "over", "nodes", "unit", "off by at most"), rows, (3, 5)),
@@ -62,6 +62,7 @@ def _example(npz: str, sheet: Sheet) -> str:
     setting = "" if sheet.setting == "default" else f', "{sheet.setting}"'
     unit = "" if sheet.unit in {"", "1"} else f" {sheet.unit}"
     return (
+        "# run in the folder data/ of this book\n"
         "from read_table import value\n\n"
         f'value("{file}", "{sheet.quantity}", {{{places}}}{setting})'
         f"  # {float(sheet.values[third]):.6g}{unit}"

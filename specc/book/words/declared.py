@@ -6,7 +6,7 @@ from runtime.architecture import Architecture, Node
 from runtime.program import Constant, Control
 from specc.book.chapters import Table
 from specc.book.naming import Names
-from specc.book.words.quantities import NOTHING, exact, range_of
+from specc.book.words.quantities import NOTHING, exact, listed, range_of
 from specc.book.words.wiring import source_of
 
 
@@ -20,11 +20,17 @@ def controls_table(
             range_of(control),
             exact(control.default, control.unit),
             source_of(made, node, control, names),
-            control.about or NOTHING,
+            control.about or _channels(made, node, control.name),
         )
         for control in controls
     )
-    return Table(("control", "range", "default", "set here to", "what it does"), rows)
+    return Table(("control", "range", "default", "here", "what it does"), rows)
+
+
+def _channels(made: Architecture, node: Node, entry: str) -> str:
+    """What a control goes to as it is."""
+    told = [f"`{made.channels[c.channel].name}`" for c in node.commands if c.entry == entry]
+    return f"goes to {listed(told)}" if told else NOTHING
 
 
 def constants_table(constants: Sequence[Constant]) -> Table:

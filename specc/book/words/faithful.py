@@ -1,9 +1,15 @@
 """What counts as faithful, and what is known of whether a robot can do it."""
 
+from collections.abc import Iterator
+
 from runtime.program import Program, State
 from specc.book.chapters import Block, Bullets, Paragraph, Section, Table
+from specc.book.trials import Trial
+from specc.book.words.prose import prose
 from specc.book.words.quantities import NOTHING, exact, span
+from specc.book.words.source import words_above
 from specc.figures.quantities import percent, seconds
+from verifier.fidelity.switching.means import FEWEST
 
 LEVELS = {
     "demonstrated": "a robot has done it",
@@ -12,9 +18,10 @@ LEVELS = {
 }
 
 
-def faithful_section(program: Program) -> Section:
-    """Tolerances, region, and evidence."""
-    return Section("What counts as faithful", (*_fidelity(program), *_feasibility(program)))
+def faithful_section(program: Program, trial: Trial) -> Section:
+    """Tolerances, region, changes of mode, and evidence."""
+    blocks = (*_fidelity(program), *_changes(program, trial), *_feasibility(program))
+    return Section("What counts as faithful", blocks)
 
 
 def _fidelity(program: Program) -> list[Block]:
@@ -36,15 +43,17 @@ def _fidelity(program: Program) -> list[Block]:
         )
         for name, value in of.tolerance.items()
     )
-    titles = ("state", "tolerance", "scatter allowed beside", "to be seen in")
+    titles = ("state", "tolerance", "scatter allowed beside", "to be recorded in")
     blocks: list[Block] = [
         Paragraph(
             f"From any measured state the field predicts where the robot is {seconds(of.horizon)}"
             " later. It is faithful where, on average over like situations, it is there to within"
-            " the tolerance. Single runs may scatter about that by chance, as much as is said"
-            " beside; without a number, by no more than the noise of the sensors."
+            " the tolerance: how situations are told apart says"
+            " [how to check it](building). Single runs may scatter about that by chance, as much as"
+            " is said beside; without a number, by no more than the noise of the sensors."
         ),
         Table(titles, rows),
+        *map(Paragraph, words_above(program.source.text, "fidelity:")),
     ]
     if of.region:
         share = percent(of.coverage)
@@ -57,9 +66,26 @@ def _fidelity(program: Program) -> list[Block]:
     return blocks
 
 
+def _changes(program: Program, trial: Trial) -> Iterator[Block]:
+    """What is asked of changes of mode, which are judged apart."""
+    if program.fidelity is None or not program.field.guards:
+        return
+    horizon = seconds(program.fidelity.horizon)
+    first, *questions = prose("faithful_changes")
+    yield Paragraph(first)
+    yield Bullets(tuple(text.format(horizon=horizon, fewest=FEWEST) for text in questions))
+    found = trial.procedure.rehearsal if trial.procedure is not None else None
+    if found is not None and found.ways:
+        rows = tuple(
+            (f"`{way.source}` to `{way.target}`", seconds(way.allowed), way.basis)
+            for way in found.ways
+        )
+        yield Table(("change", "may be late or early by", "because"), rows)
+
+
 def _region(state: State, region: dict[str, tuple[float, float]]) -> str:
     if state.name not in region:
-        return "wherever it goes"
+        return "any place"
     return span(*region[state.name], state.unit)
 
 

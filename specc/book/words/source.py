@@ -19,6 +19,15 @@ def author_words(text: str) -> tuple[str, ...]:
     return tuple(" ".join(piece.split()) for piece in pieces if piece.strip())
 
 
+def words_above(text: str, key: str) -> tuple[str, ...]:
+    """What its author says right above a key at the left edge."""
+    lines = text.splitlines()
+    place = next((k for k, line in enumerate(lines) if line.startswith(key)), 0)
+    above = list(takewhile(lambda line: line.startswith("#"), reversed(lines[:place])))
+    told = " ".join(line.lstrip("#").strip() for line in reversed(above))
+    return (told,) if told else ()
+
+
 def behavior_spec(program: Program) -> BehaviorSpec | None:
     """The spec that a program was compiled from, out of the text that it carries."""
     loaded = examine_source(Source(program.source.file, program.source.text)).loaded
