@@ -1,13 +1,16 @@
 """Books beside recordings: which modules are done, which fail, and which lack data."""
 
 import json
+import re
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 from textwrap import dedent
 
 import numpy as np
 import pytest
 
+from runtime.program import Program
 from runtime.recording.scenario_run import recorded_run
 from specc.book.export import export_book
 from specc.book.folder import read_book
@@ -20,6 +23,7 @@ from specc.verifying.book_modules import pieces_of
 from specc.verifying.book_record import book_record
 from specc.verifying.book_verdict import verify_book
 from tests.specc.book_scenes import FILES, SCENARIO, laid_down
+from verifier.traces.read import read_trace
 
 MAPPING = """
 trace:
@@ -295,3 +299,19 @@ def test_several_specs_are_refused(
     mapped = str(home / "mapped.yaml")
     assert main(["verify", str(book), "x.csv", "--spec", mapped, "--spec", mapped]) == 2
     assert "--spec: name one spec" in capsys.readouterr().err
+
+
+def test_the_example_in_the_book_is_a_recording_of_its_module(book: Path, tmp_path: Path) -> None:
+    page = unescape(re.sub("<[^>]+>", "", (book / "pages" / "building.html").read_text()))
+    found = re.search(r"time,bearing,gain\n(?:[0-9.,e-]+\n)+", page)
+    assert found is not None
+    (tmp_path / "run.csv").write_text(found.group())
+    loaded = load_book(book)
+    pieces = [p for made, _ in loaded.architectures for p in pieces_of(made)]
+    program = spec_held(loaded, tmp_path / "run.csv", pieces).program
+    assert isinstance(program, Program)
+    assert program.name == "face"
+    bearing = read_trace(tmp_path / "run.csv", program).series["bearing"]
+    slope = -1.5 * np.sin(bearing.values[:-1])
+    assert np.diff(bearing.values) / np.diff(bearing.times) == pytest.approx(slope, rel=1e-3)
+    assert "time, far, choice" in page

@@ -7,6 +7,7 @@ from specc.book.contents import Contents, Drawn
 from specc.book.naming import Names
 from specc.book.words.prose import prose
 from specc.book.words.quantities import listed
+from specc.book.words.recording import TITLE, recording_section
 from specc.book.words.wiring import link
 
 LEAD = "What to do with this book: build each module by itself, check it, then join them."
@@ -23,6 +24,7 @@ def building_chapter(contents: Contents, names: Names) -> Chapter:
             Section("The idea", _paragraphs("building_idea")),
             Section("Stage 5: the base behaviors", tuple(_behaviors(contents, names))),
             Section("Stage 6: the control architecture", tuple(_modules(contents, names))),
+            recording_section(contents, names),
             Section("Checking with specc", tuple(_checking(contents))),
             Section("Checking without specc", _paragraphs("building_without")),
             Section("Where robot and book differ", (Bullets(prose("building_differing")),)),
@@ -77,10 +79,18 @@ def _modules(contents: Contents, names: Names) -> Iterator[Block]:
 
 def _checking(contents: Contents) -> Iterator[Block]:
     yield Paragraph("Whoever has specc judges all modules against all recordings at once:")
-    yield Listing("specc verify book/ runs/*.mcap", "shell")
+    yield Listing("specc verify book/ runs/*.csv", "shell")
     yield Paragraph(
-        "It says of every module whether it is done, fails, or lacks data and what then is still to"
-        " be recorded. The program in this book is"
+        f"`runs` holds recordings as above (“{TITLE}”), of any of the modules, and of any"
+        " format. It says of every module whether it is done, fails, or lacks data: its recordings"
+        " together get PASS, FAIL or INCONCLUSIVE; one that fails by itself fails the module. Of"
+        " what lacks data it says what is still to be recorded; of modules of which nothing was"
+        " recorded `--procedures` prints that. With `--only NAME,NAME` these modules count alone,"
+        " and the exit status is 0 as soon as they are done. `-o report.html` writes a page with"
+        " what explains each verdict."
+    )
+    yield Paragraph(
+        "The program in this book is"
         f" [{contents.artifact_name}]({contents.artifact_name}); the same one is made from the"
         " specs in it, byte for byte:"
     )
