@@ -50,12 +50,14 @@ class Figure:
     """A picture of the book, by its name in `figures/`; caption: how to read it.
 
     alt: what it shows, to those who can't see it. width: of the PDF's text width, at most.
+    is_wide: at its own size: on pages it is scrolled, in the PDF it has a page of that size.
     """
 
     name: str
     caption: str
     alt: str
     width: float = 1.0
+    is_wide: bool = False
 
 
 @final

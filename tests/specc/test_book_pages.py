@@ -1,5 +1,8 @@
 """Pages and the PDF of a book: what texts of strangers become, and that they are the same twice."""
 
+import re
+import zlib
+
 import pytest
 
 from runtime.code import Code
@@ -33,11 +36,12 @@ def chapters(text: str = BAD) -> tuple[Chapter, ...]:
         Bullets((text, text), is_ordered=True),
         Table((text, "n"), ((text, "1"), (text, "2")), (1,)),
         Formulas(((text, text, text), ("a", "b", ""))),
-        Listing(text, "yaml"),
+        Listing(text, "python"),
         Figure("square", text, text),
     )
+    spec = Section(text, (Listing(text, "yaml"),))
     return (
-        Chapter("index", "book", text, text, (Section(text, blocks),)),
+        Chapter("index", "book", text, text, (Section(text, blocks), spec)),
         Chapter("two", "page", "two", "", (Section("s", (Paragraph("[back](index)"),)),)),
     )
 
@@ -102,3 +106,20 @@ def test_a_listing_tells_comments_keys_and_texts_apart() -> None:
 
     assert '<span class="k">about</span>: <span class="s">&#34;a # b&#34;</span>' in shown
     assert '<span class="c"># &lt;c&gt;</span>' in shown
+
+
+def test_a_wide_figure_is_scrolled_on_pages_and_has_a_page_of_its_size_in_the_document() -> None:
+    figure = Figure("wires", "Caption.", "wires", is_wide=True)
+    listing_ = Section("The spec", (Listing("kind: behavior", "yaml"),))
+    chapter = Chapter("a", "k", "A", "", (Section("S", (figure,)), listing_))
+    page = book_pages("b", (chapter,), frozenset())["index.html"].decode()
+    assert '<figure class="wide">' in page
+    assert "kind" in page
+    width, height = 2000, 700
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}pt" height="{height}pt"/>'
+    made = typeset("b", "", (chapter,), {"wires": svg.encode()})
+    streams = re.findall(rb"stream\r?\n(.*?)\r?\nendstream", made, re.DOTALL)
+    opened = b"".join(zlib.decompressobj().decompress(s) for s in streams if s[:1] == b"x")
+    widths = [float(w) for w in re.findall(rb"/MediaBox ?\[0 0 ([\d.]+) ", made + opened)]
+    assert len(widths) == 3
+    assert max(widths) > width

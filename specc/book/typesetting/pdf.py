@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from specc.book.chapters import Chapter
+from specc.book.chapters import Chapter, Listing, Section
 from specc.book.typesetting.runs import runs_of
 from specc.faults import fault
 
@@ -69,8 +69,14 @@ def _chapter(chapter: Chapter) -> dict[str, Any]:
         "sections": [
             {"title": section.title, "blocks": [_block(block) for block in section.blocks]}
             for section in chapter.sections
+            if not _is_spec(section)
         ],
     }
+
+
+def _is_spec(section: Section) -> bool:
+    """Whether it shows a spec, which is a file of the book: not worth paper, all of it is told."""
+    return any(isinstance(each, Listing) and each.language == "yaml" for each in section.blocks)
 
 
 def _block(block: Any) -> dict[str, Any]:

@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
-from specc.book.chapters import Block, Bullets, Chapter, Listing, Paragraph, Section, Table
+from specc.book.chapters import Block, Bullets, Chapter, Paragraph, Section, Table
 from specc.book.contents import Contents
-from specc.book.reader import reader_text
 from specc.book.words.prose import prose
 from specc.figures.quantities import seconds
 from verifier.report.requirement_results import Outcome
@@ -24,7 +23,6 @@ def front_chapter(contents: Contents, chapters: tuple[Chapter, ...]) -> Chapter:
             *_result(contents),
             Section("Files", (Table(("file", "what it holds"), tuple(_files(contents))),)),
             Section("How to read it", (Bullets(prose("reading")),)),
-            Section("The reader of its tables", _reader()),
         ),
     )
 
@@ -75,16 +73,12 @@ def _files(contents: Contents) -> Iterator[tuple[str, str]]:
     yield ("`specs/`", "every spec, as its author wrote it: " + _specs(contents))
     name = contents.artifact_name
     yield (f"[{name}]({name})", "the compiled program, which specc runs and verifies against")
-    yield ("`data/`", "fields and outputs as tables, .npz and .csv, with a reader")
+    yield (
+        "`data/`",
+        "fields and outputs as tables, with [a reader](data/read_table.py); test procedures",
+    )
     yield ("`figures/`", "the figures as SVG, for light and for dark pages")
 
 
 def _specs(contents: Contents) -> str:
     return ", ".join(f"[{n.partition('/')[2]}]({n})" for n in contents.sources.names.values())
-
-
-def _reader() -> tuple[Block, ...]:
-    return (
-        Paragraph("[data/read_table.py](data/read_table.py), which needs numpy alone:"),
-        Listing(reader_text(), "python"),
-    )

@@ -61,11 +61,12 @@ def overview_chapter(of: Drawn, names: Names) -> Chapter:
 def _wiring(made: Architecture, names: Names) -> Iterator[Block]:
     alt = f"wiring of {made.name}: {', '.join(node.name for node in made.nodes)}"
     caption = (
-        "Sensors below, behaviors above them, control modules on the levels above. Each box shows"
-        " what it senses below, its control interface above, and its name, spec and period within."
-        " A line with an arrow carries a signal; a choice lets act, or sets, what it points to."
+        "Sensors at the left; the body's channels below, the base behaviors above them, control"
+        " modules on the levels above. A box has its inputs and its commands at its lower edge, its"
+        " control interface and its outputs at the upper one. A line with an arrow carries a"
+        " signal; a choice lets act, or sets, what it points to. The same as tables stands below."
     )
-    yield Figure(names.wiring(made), caption, alt)
+    yield Figure(names.wiring(made), caption, alt, is_wide=True)
 
 
 def _levels(made: Architecture, names: Names) -> Iterator[Block]:
