@@ -13,6 +13,7 @@ from specc.texts.book_verdict import (
     lacking,
     last_line,
     module_names,
+    open_words,
     unrecorded,
 )
 from specc.texts.scenario_runs import found_in
@@ -60,7 +61,7 @@ def gathered_book(verdict: BookVerdict, *, procedures: bool = False) -> RunsPage
         title=f"{verdict.name}: {last_line(verdict)}",
         verdict=str(worst),
         sign=SIGNS[worst],
-        headline=last_line(verdict),
+        headline=f"{verdict.name}: {open_words(verdict)}",
         reasons=tuple(
             f"{names[id(each)]}: {each.why[0]}"
             for each in ordered

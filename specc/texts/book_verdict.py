@@ -48,9 +48,13 @@ def taken_text(verdict: BookVerdict) -> tuple[str, ...]:
 
 def last_line(verdict: BookVerdict) -> str:
     """`2 of 8 modules done, 0 fail, 6 lack data`."""
+    return f"{done_words(verdict)}, {open_words(verdict)}"
+
+
+def open_words(verdict: BookVerdict) -> str:
+    """`0 fail, 6 lack data`, and what else is not done."""
     free = verdict.count(Standing.FREE)
-    told = [done_words(verdict)]
-    told += [_counted(verdict, each) for each in (Standing.FAILS, Standing.LACKS)]
+    told = [_counted(verdict, each) for each in (Standing.FAILS, Standing.LACKS)]
     told += [_counted(verdict, Standing.FREE)] if free else []
     told += [f"{verdict.left_out} left out"] if verdict.left_out else []
     lost = len(verdict.unusable)
@@ -92,7 +96,7 @@ def unrecorded(verdict: BookVerdict, *, procedures: bool) -> str:
     """Where in the book it stands what to record of the other modules; empty where there are none.
 
     `nothing is recorded of dock and see: what to record stands in the book, on pages/dock.html and
-    pages/see.html; --procedures prints it`
+    pages/see.html; --procedures prints it, --only leaves them out`
     """
     told = lacking(verdict, procedures=procedures)
     left = [e for e in verdict.modules if e.standing is Standing.LACKS and e not in told]
@@ -101,7 +105,8 @@ def unrecorded(verdict: BookVerdict, *, procedures: bool) -> str:
     names = module_names(verdict)
     return (
         f"nothing is recorded of {listed([names[id(each)] for each in left])}: what to record"
-        f" stands in the book, on {listed([each.page for each in left])}; --procedures prints it"
+        f" stands in the book, on {listed([each.page for each in left])}; --procedures prints it,"
+        " --only leaves them out"
     )
 
 

@@ -8,6 +8,7 @@ from runtime.arbitration.build import arbiter_of
 from runtime.user_code import UserCodeError, load_callee, where_is
 from specc.faults import fault
 from verifier.arbitration.judging import judge_arbiter
+from verifier.arbitration.misread import misread_in
 from verifier.arbitration.numbers import Decide, Running
 from verifier.arbitration.reader import CHOICE
 from verifier.report.examination import Depth, Examination
@@ -35,9 +36,12 @@ def examine_arbiter(arbiter: Arbiter, trace: Trace, *, depth: Depth = "all") -> 
     """The verdict on the robot's decisions, and what explains it.
 
     Raises:
-        SpecError: the choice, or something that is read, is not in the log (V310), or the
-            arbiter's own code fails (V382).
+        SpecError: the choice, or something that is read, is not in the log (V310), a reading is
+            in another unit (V314), or the arbiter's own code fails (V382).
     """
+    strange = misread_in(arbiter, trace)
+    if strange is not None:
+        raise fault("V314", trace.source, strange.reason, strange.advice)
     beside = Path(arbiter.source.file).parent
     try:
         decides = running(arbiter, arbiter.name, _period(trace), beside=beside)

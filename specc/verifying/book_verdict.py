@@ -110,7 +110,8 @@ def _together(piece: Piece, members: Sequence[Verification]) -> Examination:
     if isinstance(piece.spec, Arbiter):
         return pooled_decisions([each.examination for each in members])
     report = pooled(_least(members), [each.judgement for each in members if each.judgement])
-    return without_logs(Examination(report, origins=members[0].examination.origins))
+    examination = Examination(report, origins=members[0].examination.origins)
+    return without_logs(examination) if any(each.part for each in members) else examination
 
 
 def _least(members: Sequence[Verification]) -> Program:

@@ -21,9 +21,10 @@ from spec_schema.source import Source
 from verifier.fidelity.judging.departure import CONFIDENCE
 from verifier.fidelity.judging.evidence import joined
 from verifier.fidelity.judging.judgement import results_of
+from verifier.fidelity.judging.misread import turned_in_another_unit
 from verifier.fidelity.judging.outside import outside_of
 from verifier.fidelity.judging.regions import axes_of, coverage_of
-from verifier.fidelity.judging.uncompared import not_told, open_for, too_short
+from verifier.fidelity.judging.uncompared import not_told, open_for, too_short, too_slow
 from verifier.fidelity.judging.verdict import Finding, decide, notes_of, with_outside
 from verifier.fidelity.recording import Recording, identity_of, recording_of
 from verifier.fidelity.shooting.study import Study, study_of
@@ -83,7 +84,12 @@ def judgement_of(program: Program, trace: Trace) -> Judgement:
     needs = needs_of(program, trace)
     absent = not_told(needs)
     is_predicted = not needs.missing and bool(needs.driven)
-    found = switching_of(program, needs, fidelity) if is_predicted else None
+    if is_predicted:
+        strange = too_slow(needs, fidelity.horizon, trace) or turned_in_another_unit(program, needs)
+        if strange:
+            return Judgement(_unjudged(program, trace, None, strange), None, None, None)
+    is_read = is_predicted and not any(each.is_far for each in outside_of(program, needs))
+    found = switching_of(program, needs, fidelity) if is_read else None
     if absent:
         switching = None if found is None else found[0]
         return Judgement(_unjudged(program, trace, None, absent), None, None, switching)

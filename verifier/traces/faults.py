@@ -1,4 +1,4 @@
-"""Why a log can't be used for a spec: the diagnostics V301 to V313 and where they point.
+"""Why a log can't be used for a spec: the diagnostics V301 to V314 and where they point.
 
 V301 the file can't be opened        V302 not a log that we know
 V303 no such topic or column         V304 no such field
@@ -6,7 +6,7 @@ V305 not a number                    V306 no samples left
 V307 an encoding that we can't read  V308 the path is not written as one
 V309 no time column                  V310 a driven state is not bound
 V311 no message definition           V312 no sensor stamps
-V313 losses where none are allowed
+V313 losses where none are allowed   V314 a reading of an arbiter in another unit
 """
 
 import re

@@ -103,7 +103,10 @@ class _Bare:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class _Reading:
-    """A variable's samples: times (k,) in nanoseconds, the binding's delay taken off."""
+    """A variable's samples: times (k,) in nanoseconds, the binding's delay taken off.
+
+    logged: see `Series`.
+    """
 
     bound: Bound
     clock: Clock
@@ -111,6 +114,7 @@ class _Reading:
     values: Array
     losses: tuple[Loss, ...]
     notes: tuple[str, ...]
+    logged: Array | None
 
 
 def _read_bare(path: Path, program: Program, clock: ClockWish, progress: Progress | None) -> _Bare:
@@ -224,12 +228,15 @@ def _reading(program: Program, bound: Bound, run: _Run) -> _Reading:
     whole = bool(finite.all())
     values = found.values if whole else found.values[finite]
     times = run.times if whole else run.times[finite]
+    logged = None
     if state is not None and state.kind is Kind.PERIODIC:
+        if values.size and (values.min() < state.low or values.max() > state.high):
+            logged = values
         values = np.unwrap(values, period=state.high - state.low)
     # A delay of decades leaves nothing to compare, as does one of centuries.
     delay = round(min(max(bound.binding.delay, -1e9), 1e9) * 1e9)
     times = times - delay if delay else times
-    return _Reading(bound, run.clock, times, values, found.losses, found.notes)
+    return _Reading(bound, run.clock, times, values, found.losses, found.notes, logged)
 
 
 def _measured(program: Program, bound: Bound, state: State | None, run: _Run) -> Measured:
@@ -255,7 +262,12 @@ def _all_series(readings: Sequence[_Reading], start: int) -> dict[str, Series]:
         values = reading.values.view()
         values.setflags(write=False)
         series[binding.name] = Series(
-            binding.name, shared[key], values, binding.path, str(reading.clock)
+            binding.name,
+            shared[key],
+            values,
+            binding.path,
+            str(reading.clock),
+            reading.logged,
         )
     return series
 

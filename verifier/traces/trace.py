@@ -15,7 +15,8 @@ class Series:
 
     Angles of periodic states are unwrapped. `delay`, `scale`, `offset` and the unit of the
     binding are already applied. `clock` says which stamp the times are: `sensor` or `log`, or
-    `ticks` where a node of an architecture wrote down what it sampled.
+    `ticks` where a node of an architecture wrote down what it sampled. `logged`: of an angle that
+    was logged beyond its range, the values before they were unwrapped.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Series:
     values: Array
     path: str
     clock: str
+    logged: Array | None = None
 
     @property
     def was_acted_on(self) -> bool:

@@ -1,14 +1,23 @@
 """Why nothing of a trace can be compared, and what to do about it."""
 
+import math
 from collections.abc import Sequence
+from typing import Final
 
 from verifier.fidelity.judging.outside import Outside
 from verifier.fidelity.judging.sentences import too_few
 from verifier.fidelity.judging.verdict import Finding, with_outside
-from verifier.fidelity.stretches.needs import Needs
+from verifier.fidelity.stretches.needs import Needs, period_of
 from verifier.fidelity.stretches.segments import Segments, too_short_cause
 from verifier.report.report import Verdict
 from verifier.report.wording import listed, number, seconds
+from verifier.traces.trace import Trace
+
+SLOW: Final = 3.0
+"""Samples so many horizons apart are none of what shall be compared."""
+UNITS: Final = (("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9))
+SHORT: Final = {"milliseconds": "ms", "microseconds": "us", "nanoseconds": "ns"}
+"""How columns are named whose times are in such units."""
 
 
 def not_told(needs: Needs) -> Finding | None:
@@ -45,6 +54,24 @@ def too_short(
         f" by {listed(cuts)}",
         f"record {number(horizon)} s and more at a time without {causes[0].cause}, or declare a"
         " shorter `horizon`",
+    )
+
+
+def too_slow(needs: Needs, horizon: float, trace: Trace) -> Finding | None:
+    """Samples that are whole horizons apart, as where milliseconds are taken for seconds."""
+    base = needs.series[needs.base]
+    period = period_of(base.times)
+    if not math.isfinite(period) or period < SLOW * horizon:
+        return None
+    clock = next((note for note in trace.notes if note.startswith("times are ")), "")
+    unit = next((word for word, many in UNITS if period < SLOW * horizon * many), "")
+    guess = f", as if {unit} were taken for seconds" if unit else ""
+    return open_for(
+        f"{base.name} has one sample every {number(period)} s, the check compares over"
+        f" {number(horizon)} s{guess}; {clock or 'these are the stamps of the log'}",
+        f"write times in seconds, or name the column after its unit, as `time_{SHORT[unit]}`"
+        if unit
+        else f"log {base.name} at least every {number(horizon / 10.0)} s",
     )
 
 

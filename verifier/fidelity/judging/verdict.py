@@ -62,11 +62,15 @@ def decide(
 
 
 def with_outside(finding: Finding, outside: Sequence[Outside]) -> Finding:
-    """The finding with what lies outside its domain: first where it leaves the verdict open."""
+    """The finding with what lies outside its domain: first where it leaves the verdict open.
+
+    Nobody fails by a log in which something else stands than was meant.
+    """
     told = tuple(each.reason for each in outside)
-    is_open = finding.verdict is Verdict.INCONCLUSIVE
+    is_open = finding.verdict is Verdict.INCONCLUSIVE or any(each.is_far for each in outside)
+    verdict = Verdict.INCONCLUSIVE if is_open else finding.verdict
     reasons = (*told, *finding.reasons) if is_open else (*finding.reasons, *told)
-    return Finding(finding.verdict, reasons, (*(each.advice for each in outside), *finding.advice))
+    return Finding(verdict, reasons, (*(each.advice for each in outside), *finding.advice))
 
 
 def _is_open(result: VariableResult) -> bool:
