@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, final
 
@@ -67,7 +67,7 @@ def spec_held(book: LoadedBook, trace: Path, pieces: Sequence[Piece]) -> Found[P
 
 def _names_only(pieces: Sequence[Piece]) -> Wanted:
     """What has to be looked at to see which names a log holds."""
-    programs = [_program(piece) for piece in pieces]
+    programs = [_program(piece.spec) for piece in pieces if piece.spec is not None]
     paths = {
         topic: found
         for program in programs
@@ -76,23 +76,42 @@ def _names_only(pieces: Sequence[Piece]) -> Wanted:
     return Wanted(paths, frozenset(), 0)
 
 
-def _program(piece: Piece) -> Program:
-    assert piece.spec is not None, "code is judged by nobody"
-    return reader_of(piece.spec) if isinstance(piece.spec, Arbiter) else piece.spec
+def _program(spec: Program | Arbiter) -> Program:
+    return reader_of(spec) if isinstance(spec, Arbiter) else spec
 
 
 def _fit(piece: Piece, log: LogFile) -> _Fit:
-    program = _program(piece)
-    assert piece.spec is not None, "code is judged by nobody"
-    wanted = tuple(state.name for state in program.states)
+    """By where the spec says that things stand, if it says so and they do; else by its names."""
+    spec = piece.spec
+    assert spec is not None, "code is judged by nobody"
+    stated = _held(spec, log)
+    if stated is None and spec.bindings:
+        spec = _by_names(spec)
+        stated = _held(spec, log)
+    wanted = tuple(state.name for state in _program(spec).states)
+    if stated is None:
+        stated = {name for name in wanted if isinstance(log, Sheet) and name in log.columns}
+    return _Fit(piece, spec, frozenset(stated), tuple(n for n in wanted if n not in stated))
+
+
+def _held(spec: Program | Arbiter, log: LogFile) -> set[str] | None:
+    """The names that a log holds; None where it lacks what the spec says stands there."""
+    program = _program(spec)
     try:
         names = {bound.binding.name for bound in resolve(program, log)}
     except SpecError:
-        names = {name for name in wanted if isinstance(log, Sheet) and name in log.columns}
-    names |= {each.name for each in program.bindings if each.constant is not None}
-    return _Fit(
-        piece, piece.spec, frozenset(names), tuple(name for name in wanted if name not in names)
-    )
+        return None
+    return names | {each.name for each in program.bindings if each.constant is not None}
+
+
+def _by_names(spec: Program | Arbiter) -> Program | Arbiter:
+    """The spec without what it says of another log: `judge_when` stays if it reads no signal."""
+    signals = {binding.name for binding in spec.bindings} - set(spec.register)
+    reads_signals = spec.judge_when is not None and bool(signals & set(spec.judge_when.tokens))
+    condition = None if reads_signals else spec.judge_when
+    if isinstance(spec, Arbiter):
+        return replace(spec, bindings=(), judge_when=condition)
+    return replace(spec, bindings=(), judge_when=condition)
 
 
 def _called(trace: Path, fits: Sequence[_Fit]) -> list[_Fit]:

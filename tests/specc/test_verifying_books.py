@@ -23,6 +23,7 @@ from specc.verifying.book_modules import pieces_of
 from specc.verifying.book_record import book_record
 from specc.verifying.book_verdict import verify_book
 from tests.specc.book_scenes import FILES, SCENARIO, laid_down
+from verifier.fidelity.judging.outside import own_binding
 from verifier.traces.read import read_trace
 
 MAPPING = """
@@ -315,3 +316,17 @@ def test_the_example_in_the_book_is_a_recording_of_its_module(book: Path, tmp_pa
     slope = -1.5 * np.sin(bearing.values[:-1])
     assert np.diff(bearing.values) / np.diff(bearing.times) == pytest.approx(slope, rel=1e-3)
     assert "time, far, choice" in page
+
+
+def test_a_log_under_the_specs_own_names_need_not_stand_where_its_author_had_it(
+    book: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "run.csv").write_text("time,bearing,gain\n0,0.1,1\n0.1,0.1,1\n")
+    loaded = load_book(book)
+    pieces = [p for made, _ in loaded.architectures for p in pieces_of(made)]
+    face = next(p for p in pieces if isinstance(p.spec, Program))
+    assert isinstance(face.spec, Program)
+    elsewhere = own_binding(face.spec.states[0], "light_angle")
+    bound = replace(face, spec=replace(face.spec, bindings=(elsewhere,)))
+    found = spec_held(loaded, tmp_path / "run.csv", [bound]).program
+    assert found.bindings == ()
