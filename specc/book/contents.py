@@ -16,10 +16,12 @@ from specc.book.origins import renamed
 from specc.book.rehearsing import trial_of
 from specc.book.settings import DEFAULT, settings_of
 from specc.book.sources import Sources, sources_of
+from specc.book.speeds import speeds_at
 from specc.book.tables import Sheet, sheets_of
 from specc.book.trials import NO_TRIAL, Trial
 from specc.book.views import Decisions, View, decisions_at, views_at
 from specc.faults import fault
+from specc.figures.rate_plane import RatePlane
 from specc.scenarios.simulating import Simulation, simulate_scenario
 from verifier.report.requirement_results import RequirementResult
 
@@ -37,6 +39,7 @@ class Shown:
     settings: tuple[Setting, ...] = ()
     portraits: tuple[View, ...] = ()
     decisions: tuple[Decisions, ...] = ()
+    speeds: tuple[RatePlane, ...] = ()
     sheets: tuple[Sheet, ...] = ()
     trial: Trial = NO_TRIAL
 
@@ -185,4 +188,5 @@ def _behavior(architecture: Architecture, node: Node) -> Shown:
         for setting in settings
         for sheet in sheets_of(program, setting.name, setting.controls, wired)
     )
-    return Shown(node, settings, views_at(program, settings), sheets=sheets)
+    views, speeds = views_at(program, settings), speeds_at(program, settings)
+    return Shown(node, settings, views, sheets=sheets, speeds=speeds)

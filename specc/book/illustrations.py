@@ -9,6 +9,7 @@ from specc.book.naming import RUN, Names
 from specc.figures.decisions import draw_decisions
 from specc.figures.palettes import PALETTES
 from specc.figures.portrait import draw_portrait
+from specc.figures.rate_plane import draw_rate_plane
 from specc.figures.style import Picture, rendered
 from specc.figures.style_names import Style
 from specc.figures.wiring import draw_wiring
@@ -40,6 +41,9 @@ def _drawings(contents: Contents, names: Names) -> Iterator[tuple[str, Draw]]:
             for k, view in enumerate(shown.portraits):
                 name = names.portrait(of.architecture, shown.node, k)
                 yield name, partial(draw_portrait, view.portrait)
+            for k, plane in enumerate(shown.speeds, len(shown.portraits)):
+                name = names.portrait(of.architecture, shown.node, k)
+                yield name, partial(draw_rate_plane, plane)
             for k, decisions in enumerate(shown.decisions):
                 name = names.portrait(of.architecture, shown.node, k)
                 yield name, partial(draw_decisions, decisions.portrait)

@@ -50,7 +50,7 @@ class Names:
 
     def figures(self, made: Architecture, shown: Shown) -> tuple[str, ...]:
         """The figures of a node, as files."""
-        count = range(len(shown.portraits) + len(shown.decisions))
+        count = range(len(shown.portraits) + len(shown.decisions) + len(shown.speeds))
         return tuple(f"figures/{self.portrait(made, shown.node, k)}.svg" for k in count)
 
 

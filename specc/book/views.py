@@ -8,6 +8,7 @@ from runtime.arbiter import Arbiter
 from runtime.program import Kind, Program
 from specc.book.formulas import in_mode, reads
 from specc.book.manifest import Setting
+from specc.book.speeds import moves_alike
 from specc.figures.quantities import quantity
 from specc.given import Value
 from specc.portraying import portrait
@@ -72,7 +73,7 @@ def field_reads(program: Program) -> set[str]:
 
 
 def views_of(program: Program, controls: Mapping[str, float]) -> tuple[View, ...]:
-    """The portraits at values (SI) of controls, one for each mode."""
+    """The portraits at values (SI) of controls, one for each mode that has one to tell of."""
     units = {control.name: control.unit for control in program.controls}
     given: dict[str, Value] = {name: v / units[name].scale for name, v in controls.items()}
     at = ", ".join(f"{name} = {quantity(v, units[name], 6)}" for name, v in controls.items())
@@ -82,6 +83,8 @@ def views_of(program: Program, controls: Mapping[str, float]) -> tuple[View, ...
         return tuple(_alone(program, given, at))
     found = []
     for index, value in enumerate(values):
+        if moves_alike(program, index):
+            continue
         held = {**given, mode: value}
         title = f"{mode} is {value}" + (f"; {at}" if at else "")
         found.append(View(title, portrait(program, _axes(program, index), held)))

@@ -52,7 +52,7 @@ def behavior_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
         faithful_section(program, shown.trial),
         procedure_section(program, shown.trial, names.procedure(made, node)),
         data_section(of, shown, names),
-        Section("Phase portraits", tuple(_portraits(program, shown, made, names))),
+        _pictures(program, shown, made, names),
         spec_section(program.source),
     )
     return Chapter(
@@ -253,6 +253,12 @@ def _resets(program: Program, guard: Guard) -> str:
     return f"; then `{told}`" if told else ""
 
 
+def _pictures(program: Program, shown: Shown, made: Architecture, names: Names) -> Section:
+    """Its portraits, or what is told in their place."""
+    title = "Phase portraits" if shown.portraits else "The field as a picture"
+    return Section(title, tuple(_portraits(program, shown, made, names)))
+
+
 def _portraits(program: Program, shown: Shown, made: Architecture, names: Names) -> Iterator[Block]:
     for k, view in enumerate(shown.portraits):
         yield Heading(view.title)
@@ -260,10 +266,19 @@ def _portraits(program: Program, shown: Shown, made: Architecture, names: Names)
         alt = f"phase portrait of {program.name}: {view.title}"
         yield Figure(names.portrait(made, shown.node, k), caption, alt, PORTRAIT)
         yield from topology_blocks(view.portrait)
+    for k, plane in enumerate(shown.speeds, len(shown.portraits)):
+        yield Heading(plane.title)
+        caption = HOW_FAST if k == len(shown.portraits) else ""
+        alt = f"{plane.title}, over what {program.name} senses"
+        yield Figure(names.portrait(made, shown.node, k), caption, alt, PORTRAIT)
 
 
 PORTRAIT = 0.8
 """Of the width of a page of the PDF."""
+HOW_FAST = (
+    "What it moves goes on alike wherever it is: what it senses alone decides how fast. Hatched:"
+    " here the mode is left."
+)
 HOW_TO_READ = (
     "Lines follow the field, darker where it is faster; dots are fixed points (full: they attract),"
     " thick closed lines are cycles, tinted areas are basins of attraction. States that are not on"
