@@ -114,9 +114,9 @@ def _rules() -> Iterator[str]:
         " numbers from 0. A mode stands in each row, as it is at that time."
     )
     yield (
-        "Controls have a column even where they were never changed: what is not logged is not"
-        " known, and leaves the verdict open. What an arbiter has of controls may be left out; they"
-        " then have their defaults."
+        "Controls have a column even where they were never changed: what the field reads and nobody"
+        " logged is not known, and leaves the verdict open. Controls of an arbiter may be left out;"
+        " they then have their defaults."
     )
     yield (
         "Log what the module itself was given and decided by, at the time at which it was so;"
