@@ -19,7 +19,7 @@ def procedure_sentences(procedure: Procedure) -> tuple[str, ...]:
 
 
 def run_sentences(procedure: Procedure) -> tuple[str, ...]:
-    """`run 1: start at distance 0.5 m, heading -0.4 rad; run 8 s; repeat 3 times` for each run."""
+    """`run 1: start with distance 0.5 m, heading -0.4 rad; run 8 s; repeat 3 times` for each run."""
     return tuple(
         f"run {place}: {drive_phrase(procedure, drive)}"
         for place, drive in enumerate(procedure.drives, 1)
@@ -30,7 +30,7 @@ def drive_phrase(procedure: Procedure, drive: Drive) -> str:
     """One run, its stages one after the other."""
     signals = {each.name: each for each in procedure.signals}
     start = listed([_at(signals[n], v) for n, v in drive.start.items() if n in signals])
-    parts = [f"start at {start}" if start else "start anywhere"]
+    parts = [f"start with {start}" if start else "start anywhere"]
     standing = {n: v for n, v in drive.start.items() if n in signals and signals[n].is_sensed}
     for stage in drive.stages:
         parts.append(_stage(stage, standing, signals))
@@ -133,7 +133,7 @@ def lateness_sentence(late: Lateness) -> str:
 
 def _planted(each: Planted, unit: Unit) -> str:
     return (
-        f"one whose {each.variable} is carried {quantity(each.departure, unit)} away within"
+        f"a robot whose {each.variable} is carried {quantity(each.departure, unit)} away within"
         f" {WITHIN} gets {each.verdict.upper()}"
     )
 

@@ -73,16 +73,23 @@ def _held(procedure: Procedure) -> str:
 def _how_to(program: Program, procedure: Procedure) -> Iterator[str]:
     """How a run is brought about: where it starts, what may be fed in, how a mode is entered."""
     changing = given(procedure)
+    told = any(GOES_ON in row for row in legs_table(procedure).rows)
+    goes_on = f" {GOES_ON}: as the behavior moves it, or as follows from that." if told else ""
     yield (
         "A start need not be met exactly, since what was measured counts: where the surroundings"
-        f" do not allow it, take the nearest that they do. {GOES_ON} stands for what the behavior"
-        " moves, or what follows from that."
+        f" do not allow it, take the nearest that they do.{goes_on}"
     )
     moved = [f"`{s.name}`" for s in procedure.signals if is_moved(s) and s.name in changing]
     if moved:
         yield (
             f"{listed(moved)}: readings may be fed to the behavior in place of its sensors'; log"
             " what it was given. An arrow: brought there evenly."
+        )
+    other = [s.name for s in procedure.signals if is_moved(s) and s.name not in changing]
+    if other:
+        yield (
+            f"{listed([f'`{n}`' for n in other])}: as it comes about while the robot moves; it"
+            " may be fed in, too."
         )
     real = [f"`{name}`" for name in program.field.driven if name != program.field.mode]
     yield (

@@ -137,7 +137,7 @@ def test_the_same_spec_has_the_same_procedure(wall: Program) -> None:
 
 def test_runs_are_told_in_words_with_units(procedure: Procedure) -> None:
     first = run_sentences(procedure)[0]
-    assert first.startswith("run 1: start at distance 0.")
+    assert first.startswith("run 1: start with distance 0.")
     assert " m and heading " in first
     assert "; run 6 s with wanted " in first
     assert "1/s" in first
