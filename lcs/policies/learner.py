@@ -1,7 +1,7 @@
 """A policy from what was lived: what actions are worth, rules for the best ones, few of them."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, final
 
 import numpy as np
@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from lcs.alcsr.config import GROWN
 from lcs.alcsr.learner import ALCSR
-from lcs.arrays import Array, Integers
+from lcs.arrays import Array, Booleans, Integers
 from lcs.policies.decision_list import DecisionList
-from lcs.policies.listing import Offer, listed
+from lcs.policies.listing import Offer, counted, listed
 from lcs.policies.steps import Steps
 from lcs.policies.worth import worth_of
 from lcs.rules.deciding import decide
@@ -26,7 +26,15 @@ EQUAL: Final = 0.1
 
 At stake is the difference of the best and the worst action, in the middle of all places.
 """
-MOST_RULES: Final = 12
+MOST_RULES: Final = 20
+TAUGHT: Final = 6_000
+"""Places that rules are learnt from: so many tell as much as all, the more so as those where more
+is at stake are more likely among them."""
+LISTED: Final = 12_000
+"""Places that lists are made for."""
+DRAWS: Final = 2
+"""How often rules are learnt, each time from other places: lists that lose as little may do as
+differently in trials as any."""
 
 Making: TypeAlias = Callable[[int, Array, Array, int], ALCSR | XCSR]
 """From the number of actions, the lowest and the highest inputs (n,), and a seed."""
@@ -63,13 +71,21 @@ class Voting:
 class Found:
     """Lists of few rules, and all the rules that they were chosen from.
 
-    lists: for each action the list that takes it where no rule holds. Which is best is not told by
-    what single decisions lose: an action that is nearly as good as the best, once, may lead to
-    nothing if it is always taken. It takes a trial.
+    lists: of each draw one for each action, which takes it where no rule holds. Which is best is
+    not told by what single decisions lose: an action that is nearly as good as the best, once, may
+    lead to nothing if it is always taken. It takes a trial.
+    tables: all rules, of each draw. x: all lived places (D, n). good (D, A): whether an action is
+    as good as the best there.
     """
 
     lists: tuple[DecisionList, ...]
-    table: RuleTable
+    tables: tuple[RuleTable, ...]
+    x: Array
+    good: Booleans
+
+    def counted(self, rules: DecisionList) -> DecisionList:
+        """A list with how often its rules are right by what is known here."""
+        return counted(rules, self.x, self.good)
 
 
 def found_policy(
@@ -98,18 +114,32 @@ def found_policy(
     """
     worth = worth_of(lived, actions, discount, seed)
     cost = worth.max(axis=1, keepdims=True) - worth
-    tolerance = EQUAL * float(np.median(cost.max(axis=1)))
-    x = np.clip(lived.x, *ranges)
-    order = np.random.default_rng([seed, len(x)]).permutation(len(x))
-    made = LEARNERS[learner](actions, *ranges, seed)
-    made.teach(x[order], np.where(cost <= tolerance, GOOD, WORSE)[order])
-    table = made.rules()
-    offer = offer_of(table)
-    lists = (
-        listed(offer, x, cost, otherwise, tolerance=tolerance, most=most)
-        for otherwise in range(actions)
-    )
-    return Found(tuple(lists), table)
+    stake = cost.max(axis=1)
+    tolerance = EQUAL * float(np.median(stake))
+    x, good = np.clip(lived.x, *ranges), cost <= tolerance
+    lists: list[DecisionList] = []
+    tables: list[RuleTable] = []
+    for draw in range(DRAWS):
+        chance = np.random.default_rng([seed, draw])
+        taught = drawn(chance, stake, TAUGHT)
+        made = LEARNERS[learner](actions, *ranges, int(chance.integers(2**31)))
+        made.teach(x[taught], np.where(good, GOOD, WORSE)[taught])
+        tables.append(made.rules())
+        offer, some = offer_of(tables[-1]), drawn(chance, np.ones(len(x)), LISTED)
+        lists += (
+            listed(offer, x[some], cost[some], otherwise, tolerance=tolerance, most=most)
+            for otherwise in range(actions)
+        )
+    found = Found(tuple(lists), tuple(tables), x, good)
+    return replace(found, lists=tuple(map(found.counted, lists)))
+
+
+def drawn(chance: np.random.Generator, weight: Array, most: int) -> Integers:
+    """Indices of different ones, `most` of them or all; the heavier, the likelier, (T,)."""
+    able = int(np.count_nonzero(weight))
+    if not able:
+        return chance.permutation(len(weight))[:most]
+    return chance.choice(len(weight), min(most, able), replace=False, p=weight / weight.sum())
 
 
 def offer_of(table: RuleTable) -> Offer:

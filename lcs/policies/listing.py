@@ -14,7 +14,7 @@ from lcs.arrays import Array, Booleans, Integers
 from lcs.policies.decision_list import DecisionList, holds
 from lcs.policies.simplifying import Draft, simplified
 
-WORTH_A_RULE: Final = 0.01
+WORTH_A_RULE: Final = 0.0015
 """A rule saves at least this share of what is lost without any."""
 
 
@@ -53,7 +53,7 @@ def listed(
         chosen.append(best)
         left &= ~held[best]
     draft = Draft(offer.action[chosen], offer.lower[chosen], offer.upper[chosen], otherwise)
-    return _told(simplified(draft, x, cost, least), x, cost, tolerance)
+    return counted(simplified(draft, x, cost, least), x, cost <= tolerance)
 
 
 def _best(action: Integers, held: Booleans, saves: Array) -> tuple[int, float]:
@@ -66,13 +66,15 @@ def _best(action: Integers, held: Booleans, saves: Array) -> tuple[int, float]:
     return best, float(own[best])
 
 
-def _told(draft: Draft, x: Array, cost: Array, tolerance: float) -> DecisionList:
-    """The list, with how often each rule was right where it was the first."""
-    first = draft.first(x)
-    good = cost <= tolerance
-    right = np.zeros(len(draft.action), np.int64)
-    wrong = np.zeros(len(draft.action), np.int64)
-    for r, action in enumerate(draft.action):
+def counted(rules: Draft | DecisionList, x: Array, good: Booleans) -> DecisionList:
+    """The list, with how often each rule is right at places (T, n) where it is the first to hold.
+
+    good: which actions are as good as the best there, (T, A).
+    """
+    first = rules.first(x)
+    right = np.zeros(len(rules.action), np.int64)
+    wrong = np.zeros(len(rules.action), np.int64)
+    for r, action in enumerate(rules.action):
         those = good[first == r, action]
         right[r], wrong[r] = those.sum(), (~those).sum()
-    return DecisionList(draft.action, draft.lower, draft.upper, right, wrong, draft.otherwise)
+    return DecisionList(rules.action, rules.lower, rules.upper, right, wrong, rules.otherwise)

@@ -15,11 +15,12 @@ from lcs.policies.steps import Steps
 
 FAMILIES: Final = 20
 """Trees of each action, which expect their mean together."""
-FED: Final = 10
-"""Steps in a leaf, at least."""
-GENERATIONS: Final = 4
+FED: Final = 10, 50
+"""Steps in a leaf, at least: a share of all, within these."""
+SHARE: Final = 1 / 400
+GENERATIONS: Final = 3
 """How often trees grow, each time for what those before expected."""
-LONGEST: Final = 8
+LONGEST: Final = 32
 """A choice is taken for what it brings while it is held, for so many decisions at most."""
 
 
@@ -34,7 +35,8 @@ def worth_of(lived: Steps, actions: int, discount: float, seed: int) -> Array:
     n, longer = lived.x.shape[1], held(lived, discount, LONGEST)
     x, after = inputs_of(lived.x, n), inputs_of(longer.after, n)
     steps = Lived(x, lived.action, longer.reward, after, longer.ends, longer.discount)
-    numbers = Numbers(actions, FAMILIES, FED, GENERATIONS)
+    fed = int(np.clip(SHARE * len(lived), *FED))
+    numbers = Numbers(actions, FAMILIES, fed, GENERATIONS)
     worth = fitted(steps, numbers, np.random.default_rng(seed)).T
     known = np.isfinite(worth)
     return np.where(known, worth, worth[known].min(initial=np.inf))

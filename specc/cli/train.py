@@ -69,14 +69,14 @@ By: TypeAlias = Annotated[
 ]
 Episodes: TypeAlias = Annotated[
     int | None,
-    typer.Option("--episodes", "-n", min=1, help="To learn from, at most; default 400."),
+    typer.Option("--episodes", "-n", min=1, help="To learn from, at most; default 1,400."),
 ]
 HeldOut: TypeAlias = Annotated[
     int | None,
     typer.Option("--held-out", min=0, help="Worlds to judge in at the end; default 100."),
 ]
 Rules: TypeAlias = Annotated[
-    int | None, typer.Option("--rules", min=1, help="Rules, at most; default 12.")
+    int | None, typer.Option("--rules", min=1, help="Rules, at most; default 20.")
 ]
 Seed: TypeAlias = Annotated[
     int | None, typer.Option("--seed", min=0, help="What all chance follows from; default 0.")
@@ -118,9 +118,9 @@ def train(
     """Let an arbiter of a scenario learn what to choose, and write what it learnt as rules.
 
     The scenario says under `train` which arbiter learns, and what its decisions are rewarded for.
-    Episodes run in worlds at random. After some, all that was lived is learnt from anew, and the
-    policy is tried in the same worlds as the others. The best is kept, and judged in worlds held
-    out.
+    Episodes run in worlds at random. After some, all that was lived is learnt from anew. What comes
+    out races with the best list so far, and with lists like that, in worlds that none of them has
+    seen. The last winner is judged in worlds held out.
 
     The result is the arbiter's own YAML with a short list of rules in it: in FOLDER, and with
     --write in its place. All else in the file stays.

@@ -60,7 +60,9 @@ def draw_training(
         )
         _draw(successes, one, one.explored_success, one.tried_success, palette)
         entries = [
-            line_entry(f"policy, in the same {one.worlds}\nworlds each time", **_tried(palette)),
+            line_entry(
+                f"the best so far, in {one.worlds}\nother worlds each time", **_tried(palette)
+            ),
             line_entry("while exploring, with\ntries, in other worlds", **_explored(palette)),
             line_entry(_kept(one), **_best(palette)),
         ]
@@ -73,7 +75,9 @@ def draw_training(
 
 def _kept(one: Improving) -> str:
     reward, success = one.tried[one.best], one.tried_success[one.best]
-    return f"the best, which is kept:\nreward {number(reward)}, success {100.0 * success:.0f} %"
+    return (
+        f"what is kept, in its last race:\nreward {number(reward)}, success {100.0 * success:.0f} %"
+    )
 
 
 def _draw(axes: Axes, one: Improving, explored: Array, tried: Array, palette: Palette) -> None:

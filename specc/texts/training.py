@@ -40,8 +40,10 @@ def training_record(trained: Trained) -> dict[str, Any]:
                 "decisions": each.decisions,
                 "explored": asdict(each.explored),
                 "tried": asdict(each.tried),
-                "failed": list(each.failed),
+                "failed": [asdict(failure) for failure in each.failed],
                 "rules": len(each.rules),
+                "is_new": each.is_new,
+                "raced": each.raced,
                 "took": asdict(each.took),
             }
             for each in course.generations
@@ -61,8 +63,8 @@ def _head(trained: Trained) -> str:
     lines = [f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"]
     lines.append(
         wrapped(
-            f"from {lived}; the best of {counted(count, 'generation')}, each of which was tried "
-            f"in the same {counted(settings.tried_in, 'world')}{_ending(trained)}"
+            f"from {lived}; the list won the last race of {counted(count, 'generation')}, each in "
+            f"other {counted(settings.tried_in, 'world')}{_ending(trained)}"
         )
     )
     return "\n".join(lines)
@@ -73,8 +75,8 @@ def _ending(trained: Trained) -> str:
     if course.episodes >= settings.episodes:
         return ""
     lived = f"{course.episodes:,} of {counted(settings.episodes, 'episode')}"
-    after = counted(settings.patience, "generation")
-    return f"; it stopped early, after {lived}, since {after} in a row were no better"
+    after = counted(settings.patience, "race")
+    return f"; it stopped early, after {lived}, since nothing beat the same list in {after}"
 
 
 def _judged_text(trained: Trained) -> str:

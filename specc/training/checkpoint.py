@@ -13,7 +13,7 @@ from lcs.policies.steps import Steps, joined
 from specc.faults import fault
 from specc.files import write_atomically
 from specc.kept import UNREADABLE
-from specc.training.training import Course, Generation, Took, Trial
+from specc.training.training import Course, Failure, Generation, Took, Trial
 
 CHECKPOINT: Final = "checkpoint.npz"
 
@@ -38,8 +38,10 @@ def keep(course: Course, path: Path) -> None:
         "explored": [_numbers(each.explored) for each in every],
         "tried": [_numbers(each.tried) for each in every],
         "took": [_numbers(each.took) for each in every],
-        "failed": np.array([world for worlds in failed for world in worlds], np.int64),
-        "failures": [len(worlds) for worlds in failed],
+        "is_new": [each.is_new for each in every],
+        "raced": [each.raced for each in every],
+        "failed": np.array([(f.world, f.decisions) for each in failed for f in each], np.int64),
+        "failures": [len(each) for each in failed],
         "rules": [len(each.rules) for each in every],
         "otherwise": [each.rules.otherwise for each in every],
     }
@@ -82,8 +84,10 @@ def _course(kept: dict[str, Any]) -> Course:
             decisions=int(kept["decisions"][g]),
             explored=_trial(kept["explored"][g]),
             tried=_trial(kept["tried"][g]),
-            failed=tuple(failed[g].tolist()),
+            failed=tuple(Failure(*numbers) for numbers in failed[g].tolist()),
             rules=rules[g],
+            is_new=bool(kept["is_new"][g]),
+            raced=int(kept["raced"][g]),
             took=Took(*kept["took"][g].tolist()),
         )
         for g in range(len(rules))

@@ -32,13 +32,15 @@ TRIES: Final = 1
 class Task:
     """An episode to live: the world's seed, what decides, and how much it explores.
 
-    tries: sets what it tries apart from what another episode in the same world does.
+    tries: sets what it tries apart from what another episode in the same world does. first_try:
+    see `Exploring`.
     """
 
     world: int
     policy: Policy
     explore: float
     tries: int = 0
+    first_try: int | None = None
 
 
 @final
@@ -98,6 +100,7 @@ def lived(scenario: Scenario, task: Task, ticks: LastTicks | None = None) -> Epi
         len(arbiter.choices),
         task.explore,
         np.random.default_rng([task.world, TRIES, task.tries]),
+        task.first_try,
     )
     ticks = ticks or LastTicks()
     learners = {training.arbiter: Learner(exploring, _nothing)}

@@ -14,7 +14,8 @@ from lcs.policies.policy import Policy
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.machine import evaluate
-from specc.training.training import AtRandom, Progress, Trial, live_through, trial_of, trial_tasks
+from specc.training.living import Progress, live_through
+from specc.training.training import AtRandom, Trial, trial_of, trial_tasks
 from specc.training.workers import Workers
 from specc.training.worlds import For
 from verifier.arbitration.shares import interval_of

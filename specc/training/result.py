@@ -20,9 +20,10 @@ from specc.faults import fault
 from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
+from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
-from specc.training.training import Course, Progress, policy_of
+from specc.training.training import Course, policy_of
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
@@ -98,7 +99,7 @@ def best_table(course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
     """All rules that those of the best policy were chosen from, learnt again: they are not kept."""
     best = course.best
     number = course.generations.index(best)
-    return policy_of(course.lived[: best.episodes], scenario, begun.settings, number).table
+    return policy_of(course.lived[: best.episodes], scenario, begun.settings, number).tables[0]
 
 
 def text_of(scenario: Scenario, learner: str) -> Loaded:

@@ -32,7 +32,7 @@ def shares_of(course: Course, pace: Pace, jobs: int) -> Shares:
     took = [each.took for each in course.generations]
     learning = sum(each.learning for each in took)
     living = sum(each.exploring + each.trying for each in took)
-    decisions = sum(each.explored.decisions + each.tried.decisions for each in course.generations)
+    decisions = sum(each.explored.decisions + each.raced for each in course.generations)
     seconds = learning + living
 
     def share(part: float) -> float:

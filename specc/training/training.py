@@ -1,9 +1,9 @@
-"""Training: explore, learn from all that was lived, try what was learnt, and keep the best."""
+"""Training: explore, learn from all that was lived, let what was learnt race with the best."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import Final, TypeAlias, final
+from typing import Final, final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,21 +14,23 @@ from lcs.policies.learner import Found, found_policy
 from lcs.policies.policy import Policy
 from lcs.policies.shortened import shortened
 from lcs.policies.steps import Steps, joined
+from lcs.policies.variations import Variation
 from runtime.arbiter import Arbiter
 from runtime.scenario import Scenario
 from specc.training.episode import Episode, Task, trained_arbiter, training_of
+from specc.training.living import Progress, live_through
+from specc.training.race import raced
 from specc.training.settings import Settings
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
 EXPLORING: Final = "exploring"
 AGAIN: Final = 2
-"""What sets the chance of which worlds are explored again apart from other chance."""
+VARYING: Final = 3
+"""What sets the chance of which failures are lived again, and of variations, apart from other."""
 
-FIRST: Final = 10
-"""Worlds in which all lists of a generation are tried; the best of them is tried in all."""
-
-Progress: TypeAlias = Callable[[str, int, int], None]
+BEFORE: Final = 30
+"""Decisions before a failure, at most, at which something else is tried."""
 
 
 @final
@@ -56,40 +58,55 @@ class Took:
 
 
 @final
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The seed of a world in which a policy failed, and after how many decisions."""
+
+    world: int
+    decisions: int
+
+
+@final
 @dataclass(frozen=True, eq=False, slots=True)
 class Generation:
-    """A policy that was learnt: after how many episodes and decisions, and how it did.
+    """What was best after so many episodes and decisions, and how it did.
 
-    explored: the episodes that it was learnt from last. tried: the policy itself. failed: numbers
-    of the worlds where that failed. took: no part of what follows from the seed.
+    explored: the last of these episodes. tried: the best list, in the worlds of its race. failed:
+    where it did. is_new: it is another than before. raced: decisions of all lists in the race.
+    took: no part of what follows from the seed.
     """
 
     episodes: int
     decisions: int
     explored: Trial
     tried: Trial
-    failed: tuple[int, ...]
+    failed: tuple[Failure, ...]
     rules: DecisionList
+    is_new: bool
+    raced: int
     took: Took
 
 
 @final
 @dataclass(slots=True)
 class Course:
-    """A training so far: everything that it goes on from; `lived` has an entry per episode."""
+    """A training so far: everything that it goes on from.
+
+    lived: of each episode that explored, in their order.
+    """
 
     lived: list[Steps] = field(default_factory=list)
     generations: list[Generation] = field(default_factory=list)
 
     @property
     def best(self) -> Generation:
-        """The policy that was worth most; of equal ones the first."""
-        return max(self.generations, key=lambda each: each.tried.reward)
+        """The generation that found the list which won the last race."""
+        return next(each for each in reversed(self.generations) if each.is_new)
 
     @property
     def episodes(self) -> int:
         """How many were lived to learn from."""
-        return self.generations[-1].episodes if self.generations else 0
+        return len(self.lived)
 
     def is_over(self, settings: Settings) -> bool:
         """Whether all episodes are lived, or it got no better for long enough."""
@@ -98,7 +115,7 @@ class Course:
         return self.episodes >= settings.episodes or self.is_stale(settings)
 
     def is_stale(self, settings: Settings) -> bool:
-        """Whether it got no better for long enough."""
+        """Whether no other list won for long enough."""
         behind = len(self.generations) - 1 - self.generations.index(self.best)
         return behind >= settings.patience
 
@@ -150,48 +167,79 @@ def _generation(
     clock.append(perf_counter())
     tell(f"learning{standing}", after, settings.episodes)
     lived = [*course.lived, *(episode.steps for episode in episodes)]
-    found = policy_of(lived, scenario, settings, len(course.generations))
+    champion = course.best.rules if course.generations else None
+    challengers = challengers_of(lived, champion, scenario, settings, len(course.generations))
     clock.append(perf_counter())
-    rules, tried = _best_of(found.lists, settings.tried_in, workers, told)
+    worlds = choosing_worlds(len(course.generations), settings)
+    race = raced(champion, challengers, worlds, workers, told)
     clock.append(perf_counter())
-    course.lived = lived
+    winner, course.lived = race.winner, lived
     return Generation(
         episodes=after,
         decisions=sum(len(steps) for steps in lived),
         explored=trial_of(episodes),
-        tried=trial_of(tried),
-        failed=tuple(i for i, each in enumerate(tried) if not each.succeeded),
-        rules=rules,
+        tried=trial_of(winner.episodes),
+        failed=tuple(
+            Failure(seed, len(each.steps))
+            for seed, each in zip(worlds, winner.episodes, strict=True)
+            if not each.succeeded
+        ),
+        rules=winner.rules,
+        is_new=not winner.is_champion,
+        raced=race.decisions,
         took=Took(*np.diff(clock).tolist()),
     )
 
 
-def _best_of(
-    lists: Sequence[DecisionList], worlds: int, workers: Workers, tell: Progress
-) -> tuple[DecisionList, list[Episode]]:
-    """The list that does best in the first few of the worlds, and how it does in all of them."""
-    few = min(FIRST, worlds)
-    tasks = [task for rules in lists for task in trial_tasks(rules, few, For.CHOOSING)]
-    episodes = live_through(workers, tasks, "trying all lists", tell)
-    each = [episodes[i * few : (i + 1) * few] for i in range(len(lists))]
-    best = max(range(len(lists)), key=lambda i: trial_of(each[i]).reward)
-    more = trial_tasks(lists[best], worlds, For.CHOOSING)[few:]
-    return lists[best], [*each[best], *live_through(workers, more, "trying the best", tell)]
+def challengers_of(
+    lived: Sequence[Steps],
+    champion: DecisionList | None,
+    scenario: Scenario,
+    settings: Settings,
+    number: int,
+) -> tuple[DecisionList, ...]:
+    """The lists that may be better than the best so far: what is learnt now, and like the best.
+
+    What is told of the rules of the latter, how often they were right, is of what is known now.
+    """
+    found = policy_of(lived, scenario, settings, number)
+    if champion is None:
+        return found.lists
+    chance = np.random.default_rng([settings.seed, number, VARYING])
+    x, actions = joined(lived).x, len(trained_arbiter(scenario).choices)
+    variation = Variation(found.lists, x, actions, settings.rules, chance)
+    varied = (variation.of(champion) for _ in range(settings.varied))
+    return (*found.lists, *(found.counted(shortened(rules, x)) for rules in varied))
+
+
+def choosing_worlds(number: int, settings: Settings) -> list[int]:
+    """Where the lists of a generation are tried: in worlds of its own, where no other was.
+
+    So a list that was lucky in the worlds of its first race has to be good in the next.
+    """
+    first = number * settings.tried_in
+    return [world(For.CHOOSING, first + i) for i in range(settings.tried_in)]
 
 
 def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
-    """The next episodes: in new worlds, and in some of those that the last policy failed in."""
-    before, number = course.episodes, len(course.generations)
-    count = min(settings.each, settings.episodes - before)
+    """The next episodes that explore: in new worlds, and where the last policy failed.
+
+    A failure is lived again as it was, for the same world and policy do the same, until shortly
+    before its end. Something else is tried there.
+    """
+    before, is_first = course.episodes, not course.generations
+    count = min(settings.first if is_first else settings.each, settings.episodes - before)
     new = [world(For.LEARNING, before + i, settings.seed) for i in range(count)]
-    if not course.generations:
+    if is_first:
         return [Task(each, AtRandom(), 1.0, before + i) for i, each in enumerate(new)]
     last = course.generations[-1]
-    chance = np.random.default_rng([settings.seed, number, AGAIN])
-    failed = chance.permutation(last.failed)[: int(settings.again * count)].tolist()
-    again = [world(For.CHOOSING, int(i)) for i in failed]
-    worlds = [*again, *new[len(again) :]]
-    return [Task(each, last.rules, settings.explore, before + i) for i, each in enumerate(worlds)]
+    chance = np.random.default_rng([settings.seed, len(course.generations), AGAIN])
+    back = chance.permutation(len(last.failed))[: int(settings.again * count)]
+    tasks = [Task(each, last.rules, settings.explore, before + i) for i, each in enumerate(new)]
+    for place, failure in enumerate(last.failed[i] for i in back):
+        first_try = max(failure.decisions - 1 - int(chance.integers(BEFORE)), 0)
+        tasks[place] = replace(tasks[place], world=failure.world, first_try=first_try)
+    return tasks
 
 
 def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, number: int) -> Found:
@@ -234,22 +282,9 @@ def trial_of(episodes: Sequence[Episode]) -> Trial:
     )
 
 
-def live_through(
-    workers: Workers, tasks: Sequence[Task], what: str, tell: Progress
-) -> list[Episode]:
-    """All episodes, in their order; `tell` is told `what`, how many are done, and of how many."""
-    episodes: list[Episode] = []
-    tell(what, 0, len(tasks))
-    for episode in workers.lived(tasks):
-        episodes.append(episode)
-        tell(what, len(episodes), len(tasks))
-    return episodes
-
-
 def _standing(course: Course) -> str:
-    """How the last policy did, and the best if that is another."""
+    """How the best did in its last race."""
     if not course.generations:
         return ""
-    best, last = course.best.tried, course.generations[-1].tried
-    told = f"; last: reward {last.reward:.3g}, success {100 * last.success:.0f} %"
-    return told if best is last else f"{told} (best {best.reward:.3g})"
+    tried = course.generations[-1].tried
+    return f"; best so far: success {100 * tried.success:.0f} %, reward {tried.reward:.3g}"

@@ -26,7 +26,7 @@ def warm(learner: str) -> None:
     steps = Steps(x, action, reward, np.roll(x, -1, axis=0), ends)
     ranges = np.zeros(2), np.ones(2)
     found = found_policy(steps, ranges, 2, discount=0.5, learner=learner, seed=0)
-    Voting(found.table, 0).decide(x)
+    Voting(found.tables[0], 0).decide(x)
     folder = cache_folder()
     if folder is not None:
         (folder / f"warm-policies-{learner}").touch()

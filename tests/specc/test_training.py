@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lcs.policies.decision_list import always
+from lcs.policies.steps import Steps
 from runtime.run import run
 from runtime.scenario import Scenario
 from spec_schema.diagnostics import SpecError
@@ -21,11 +22,14 @@ from specc.training.result import best_table, text_of
 from specc.training.settings import Settings
 from specc.training.spelled import with_rules
 from specc.training.training import (
+    BEFORE,
     AtRandom,
     Course,
+    Failure,
     Generation,
     Took,
     Trial,
+    choosing_worlds,
     exploring_tasks,
     policy_of,
 )
@@ -34,6 +38,10 @@ from specc.training.worlds import For, world
 from tests.specc.training_scenes import FILES, SMALL, equal, pen_in, trained, written_in
 
 TRIAL = Trial(1.0, 0.5, 3.0, 7)
+FAILED = Failure(11, 40), Failure(12, 3)
+NOTHING = Steps(
+    *(np.zeros((0, 1)), np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 1)), np.zeros(0, np.bool_))
+)
 
 
 @pytest.fixture(scope="module")
@@ -52,10 +60,12 @@ def in_silence(_what: str, _done: int, _of: int) -> None:
     """Nobody watches."""
 
 
-def generation(episodes: int, reward: float, failed: tuple[int, ...] = ()) -> Generation:
-    """One that got so much reward."""
-    tried = replace(TRIAL, reward=reward)
-    return Generation(episodes, 9, TRIAL, tried, failed, always(0, 1), Took(0.0, 0.0, 0.0))
+def generation(
+    episodes: int, failed: tuple[Failure, ...] = (), *, is_new: bool = True
+) -> Generation:
+    """One whose race a new list won, or the best so far."""
+    took = Took(0.0, 0.0, 0.0)
+    return Generation(episodes, 9, TRIAL, TRIAL, failed, always(0, 1), is_new, 7, took)
 
 
 def test_two_processes_learn_what_one_learns(pen: Scenario, whole: Course) -> None:
@@ -82,13 +92,13 @@ def test_a_training_that_goes_on_from_its_checkpoint_learns_the_same(
 def test_a_checkpoint_holds_everything_to_the_bit(whole: Course, tmp_path: Path) -> None:
     one, other = tmp_path / "one.npz", tmp_path / "other.npz"
     first, last = whole.generations
-    course = Course(whole.lived, [replace(first, failed=(1, 2)), last])
+    course = Course(whole.lived, [replace(first, failed=FAILED), last])
     keep(course, one)
     kept = taken_up(one)
     keep(kept, other)
 
     assert one.read_bytes() == other.read_bytes()
-    assert [each.failed for each in kept.generations] == [(1, 2), last.failed]
+    assert [each.failed for each in kept.generations] == [FAILED, last.failed]
     for mine, its in zip(course.generations, kept.generations, strict=True):
         assert equal(mine.rules, its.rules)
         assert (mine.explored, mine.tried, mine.took) == (its.explored, its.tried, its.took)
@@ -123,10 +133,10 @@ def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course)
     assert len(beside[2].failed) == round(10 * (1.0 - beside[2].trial.success))
 
 
-def test_what_was_best_is_learnt_again_to_the_bit(pen: Scenario, whole: Course) -> None:
-    best = whole.best
-    again = policy_of(whole.lived[: best.episodes], pen, SMALL, whole.generations.index(best))
-    assert any(equal(rules, best.rules) for rules in again.lists)
+def test_what_was_best_first_is_learnt_again_to_the_bit(pen: Scenario, whole: Course) -> None:
+    first = whole.generations[0]
+    again = policy_of(whole.lived[: first.episodes], pen, SMALL, 0)
+    assert any(equal(rules, first.rules) for rules in again.lists)
 
 
 def test_the_arbiter_with_its_rules_decides_in_a_run_as_the_list(
@@ -153,33 +163,55 @@ def test_the_arbiter_with_its_rules_decides_in_a_run_as_the_list(
     assert (AsItWas(trained_arbiter(copy)).decide(places) == rules.decide(places)).all()
 
 
-def test_worlds_where_the_last_policy_failed_are_explored_again() -> None:
-    settings = Settings(episodes=20, each=8, again=0.25)
-    failing = Course([], [generation(8, 1.0, failed=(3, 5, 7))])
-    worlds = [task.world for task in exploring_tasks(failing, settings)]
-    again = {world(For.CHOOSING, number) for number in (3, 5, 7)}
+def test_failures_are_lived_again_until_shortly_before_their_end() -> None:
+    settings = Settings(episodes=20, first=8, each=8, again=0.25)
+    failing = Course([NOTHING] * 8, [generation(8, FAILED)])
+    tasks = exploring_tasks(failing, settings)
+    again = {task.world: task.first_try for task in tasks if task.first_try is not None}
 
-    assert len(worlds) == 8
-    assert len(set(worlds) & again) == 2
-    assert set(worlds) - again == {world(For.LEARNING, 8 + i) for i in range(2, 8)}
+    assert len(tasks) == 8
+    assert set(again) == {each.world for each in FAILED}
+    for failure in FAILED:
+        assert max(failure.decisions - BEFORE, 0) <= again[failure.world] < failure.decisions
+    assert {task.world for task in tasks} - set(again) == {
+        world(For.LEARNING, 8 + i) for i in range(2, 8)
+    }
+
+
+def test_a_failure_that_is_lived_again_is_the_same_until_something_is_tried(
+    pen: Scenario,
+) -> None:
+    seed, rules = world(For.CHOOSING, 0), always(0, 1)
+    before = lived(pen, Task(seed, rules, 0.0))
+    again = lived(pen, Task(seed, rules, 1.0, tries=5, first_try=3))
+
+    assert len(before.steps) > 3
+    assert (again.steps.x[:4] == before.steps.x[:4]).all()
+    assert (again.steps.action[:3] == 0).all()
 
 
 def test_new_worlds_are_explored_where_nothing_failed() -> None:
-    settings = Settings(episodes=10, each=8)
-    tasks = exploring_tasks(Course([], [generation(8, 1.0)]), settings)
+    settings = Settings(episodes=10, first=8, each=8)
+    tasks = exploring_tasks(Course([NOTHING] * 8, [generation(8)]), settings)
 
     assert [task.world for task in tasks] == [world(For.LEARNING, 8), world(For.LEARNING, 9)]
 
 
-def test_it_stops_where_no_policy_got_better() -> None:
-    settings = Settings(episodes=100, patience=2)
-    rewards = [1.0, 3.0, 2.0, 3.0]
-    course = Course([], [generation(10 * i, reward) for i, reward in enumerate(rewards, 1)])
+def test_each_generation_races_in_worlds_of_its_own() -> None:
+    settings = Settings(tried_in=5)
+    worlds = [seed for number in range(4) for seed in choosing_worlds(number, settings)]
+    assert len(set(worlds)) == 20
 
-    assert course.best is course.generations[1]
+
+def test_it_stops_where_the_same_list_wins_for_long_enough() -> None:
+    settings = Settings(episodes=100, patience=2)
+    every = [generation(10 * i, is_new=i <= 2) for i in range(1, 5)]
+    course = Course([NOTHING] * 40, every)
+
+    assert course.best is every[1]
     assert course.is_over(settings)
-    assert not Course([], course.generations[:3]).is_over(settings)
-    assert Course([], [generation(100, 1.0)]).is_over(settings)
+    assert not Course(course.lived, every[:3]).is_over(settings)
+    assert Course([NOTHING] * 100, every[:1]).is_over(settings)
 
 
 def test_the_world_alone_takes_a_part_of_an_episode(pen: Scenario) -> None:

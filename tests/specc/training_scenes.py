@@ -11,7 +11,7 @@ from specc.training.settings import Settings
 from specc.training.training import Course, go_on
 from specc.training.workers import Workers
 
-SMALL: Final = Settings(episodes=12, each=6, tried_in=3, rules=3)
+SMALL: Final = Settings(episodes=12, first=6, each=6, varied=2, tried_in=3, rules=3)
 """Two generations."""
 
 FILES: Final = {

@@ -1,0 +1,56 @@
+"""Races of lists: who wins, in which worlds, and what a champion has to defend."""
+
+import numpy as np
+import pytest
+
+from lcs.policies.decision_list import DecisionList, always
+from runtime.scenario import Scenario
+from specc.training.race import LEFT, raced
+from specc.training.workers import Workers
+from tests.specc.training_scenes import pen_in
+
+GO, TURN = 0, 1
+WORLDS = range(8)
+
+
+@pytest.fixture(scope="module")
+def pen(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
+    """The scenario, in files of its own."""
+    return pen_in(tmp_path_factory.mktemp("pen"))
+
+
+def in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""
+
+
+def careful(room: float) -> DecisionList:
+    """To turn where less room is ahead, and to go elsewhere."""
+    counts = np.zeros(1, np.int64)
+    lower, upper = np.array([[-np.inf]]), np.array([[room]])
+    return DecisionList(np.array([TURN]), lower, upper, counts, counts, GO)
+
+
+def test_who_satisfies_what_is_required_in_more_worlds_wins(pen: Scenario) -> None:
+    blind, good = always(GO, 1), careful(0.6)
+    with Workers(pen, 1) as workers:
+        race = raced(blind, [blind, good, always(GO, 1)], WORLDS, workers, in_silence)
+
+    assert race.winner.rules is good
+    assert not race.winner.is_champion
+    assert len(race.winner.episodes) == len(WORLDS)
+
+
+def test_of_equals_the_champion_stays(pen: Scenario) -> None:
+    with Workers(pen, 1) as workers:
+        race = raced(careful(0.6), [careful(0.6), always(GO, 1)], WORLDS, workers, in_silence)
+    assert race.winner.is_champion
+
+
+def test_only_few_go_on_to_all_worlds_and_all_decisions_are_counted(pen: Scenario) -> None:
+    told: list[tuple[str, int, int]] = []
+    lists = [careful(0.1 * i) for i in range(10)]
+    with Workers(pen, 1) as workers:
+        race = raced(None, lists, WORLDS, workers, lambda *of: told.append(of))
+
+    assert [of for _, done, of in told if done == 0] == [10, 2 * LEFT[0], 5 * LEFT[1]]
+    assert race.decisions > sum(len(each.steps) for each in race.winner.episodes)
