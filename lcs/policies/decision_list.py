@@ -1,13 +1,16 @@
 """A decision list: boxes in an order; the first that holds says what is done (Rivest 1987)."""
 
-from dataclasses import dataclass
-from typing import final
+from dataclasses import dataclass, replace
+from typing import Final, final
 
 import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Array, Booleans, Integers
 from lcs.given import inputs_of
+
+OF_EACH: Final = "action", "lower", "upper", "right", "wrong"
+"""What a list has of each of its rules."""
 
 
 @final
@@ -50,11 +53,31 @@ class DecisionList:
         """
         return first_to_hold(self.lower, self.upper, inputs_of(inputs, self.lower.shape[1]))
 
+    def in_order(self, order: Integers) -> "DecisionList":
+        """These of its rules, in this order."""
+        return replace(self, **{name: getattr(self, name)[order] for name in OF_EACH})
+
+    def without(self, rule: int) -> "DecisionList":
+        """All but one of its rules."""
+        return self.in_order(np.delete(np.arange(len(self)), rule))
+
+    def with_bound(self, rule: int, i: int, side: str, value: float) -> "DecisionList":
+        """The list with another `lower` or `upper` bound of a rule in input i."""
+        bounds = getattr(self, side).copy()
+        bounds[rule, i] = value
+        return replace(self, **{side: bounds})
+
+
+def uncounted(action: Integers, lower: Array, upper: Array, otherwise: int) -> DecisionList:
+    """The list of these rules, of which nothing is known yet."""
+    nothing = np.zeros(len(action), np.int64)
+    return DecisionList(action, lower, upper, nothing, nothing, otherwise)
+
 
 def always(action: int, inputs: int) -> DecisionList:
     """The list without rules."""
-    none, no_bounds = np.zeros(0, np.int64), np.zeros((0, inputs))
-    return DecisionList(none, no_bounds, no_bounds, none, none, action)
+    no_bounds = np.zeros((0, inputs))
+    return uncounted(np.zeros(0, np.int64), no_bounds, no_bounds, action)
 
 
 def first_to_hold(lower: Array, upper: Array, x: Array) -> Integers:

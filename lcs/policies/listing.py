@@ -5,14 +5,14 @@ The next rule is always the one that saves most where no rule holds yet: separat
 for no rule. Then rules and conditions go that save next to nothing.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, final
 
 import numpy as np
 
 from lcs.arrays import Array, Booleans, Integers
-from lcs.policies.decision_list import DecisionList, holds
-from lcs.policies.simplifying import Draft, simplified
+from lcs.policies.decision_list import DecisionList, holds, uncounted
+from lcs.policies.simplifying import simplified
 
 WORTH_A_RULE: Final = 0.0015
 """A rule saves at least this share of what is lost without any."""
@@ -52,8 +52,8 @@ def listed(
             break
         chosen.append(best)
         left &= ~held[best]
-    draft = Draft(offer.action[chosen], offer.lower[chosen], offer.upper[chosen], otherwise)
-    return counted(simplified(draft, x, cost, least), x, cost <= tolerance)
+    rules = uncounted(offer.action[chosen], offer.lower[chosen], offer.upper[chosen], otherwise)
+    return counted(simplified(rules, x, cost, least), x, cost <= tolerance)
 
 
 def _best(action: Integers, held: Booleans, saves: Array) -> tuple[int, float]:
@@ -66,15 +66,14 @@ def _best(action: Integers, held: Booleans, saves: Array) -> tuple[int, float]:
     return best, float(own[best])
 
 
-def counted(rules: Draft | DecisionList, x: Array, good: Booleans) -> DecisionList:
+def counted(rules: DecisionList, x: Array, good: Booleans) -> DecisionList:
     """The list, with how often each rule is right at places (T, n) where it is the first to hold.
 
     good: which actions are as good as the best there, (T, A).
     """
     first = rules.first(x)
-    right = np.zeros(len(rules.action), np.int64)
-    wrong = np.zeros(len(rules.action), np.int64)
+    right, wrong = np.zeros_like(rules.action), np.zeros_like(rules.action)
     for r, action in enumerate(rules.action):
         those = good[first == r, action]
         right[r], wrong[r] = those.sum(), (~those).sum()
-    return DecisionList(rules.action, rules.lower, rules.upper, right, wrong, rules.otherwise)
+    return replace(rules, right=right, wrong=wrong)

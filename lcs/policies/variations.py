@@ -10,15 +10,13 @@ from typing import Any, Final, TypeAlias, final
 
 import numpy as np
 
-from lcs.arrays import Array, Integers
-from lcs.policies.decision_list import DecisionList
+from lcs.arrays import Array
+from lcs.policies.decision_list import OF_EACH, DecisionList
 
 TWICE: Final = 0.5
 """How often a list is changed a second time."""
 AS_FAR: Final = 0.1
 """How far a bound moves: a deviation of the share of lived places that are below it."""
-OF_A_RULE: Final = "action", "lower", "upper", "right", "wrong"
-"""What a list has of each rule."""
 
 Change: TypeAlias = Callable[[DecisionList], DecisionList]
 
@@ -58,20 +56,20 @@ class Variation:
         values = np.sort(self.x[:, found[1]])
         share = np.searchsorted(values, getattr(rules, side)[found]) / len(values)
         shifted = np.clip(share + AS_FAR * self.chance.standard_normal(), 0.0, 1.0)
-        return _with_bound(rules, side, found, float(np.quantile(values, shifted)))
+        return rules.with_bound(*found, side, float(np.quantile(values, shifted)))
 
     def wider(self, rules: DecisionList) -> DecisionList:
         """A bound goes."""
         side, found = self._some_bound(rules)
         if found is None:
             return rules
-        return _with_bound(rules, side, found, -np.inf if side == "lower" else np.inf)
+        return rules.with_bound(*found, side, -np.inf if side == "lower" else np.inf)
 
     def fewer(self, rules: DecisionList) -> DecisionList:
         """A rule goes."""
         if not len(rules):
             return rules
-        return _in_order(rules, np.delete(np.arange(len(rules)), self._one_of(len(rules))))
+        return rules.without(self._one_of(len(rules)))
 
     def swapped(self, rules: DecisionList) -> DecisionList:
         """Two rules change places."""
@@ -80,7 +78,7 @@ class Variation:
         order = np.arange(len(rules))
         one, other = self.chance.permutation(len(rules))[:2]
         order[[one, other]] = order[[other, one]]
-        return _in_order(rules, order)
+        return rules.in_order(order)
 
     def acting(self, rules: DecisionList) -> DecisionList:
         """Another action is taken by a rule, or where none holds."""
@@ -101,7 +99,7 @@ class Variation:
 
         columns: dict[str, Any] = {
             name: np.insert(getattr(rules, name), place, getattr(other, name)[rule], axis=0)
-            for name in OF_A_RULE
+            for name in OF_EACH
         }
         return replace(rules, **columns)
 
@@ -116,17 +114,3 @@ class Variation:
 
     def _one_of(self, count: int) -> int:
         return int(self.chance.integers(count))
-
-
-def _in_order(rules: DecisionList, order: Integers) -> DecisionList:
-    """These rules of the list, in this order."""
-    return replace(rules, **{name: getattr(rules, name)[order] for name in OF_A_RULE})
-
-
-def _with_bound(
-    rules: DecisionList, side: str, place: tuple[int, int], value: float
-) -> DecisionList:
-    """The list with another `lower` or `upper` bound of a rule in an input."""
-    bounds = getattr(rules, side).copy()
-    bounds[place] = value
-    return replace(rules, **{side: bounds})

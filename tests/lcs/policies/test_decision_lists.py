@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lcs.policies.decision_list import DecisionList, always, holds
+from lcs.policies.decision_list import DecisionList, always, holds, uncounted
 from lcs.policies.listing import Offer, listed
-from lcs.policies.simplifying import Draft, simplified
+from lcs.policies.simplifying import simplified
 
 INF = np.inf
 
@@ -90,9 +90,9 @@ def test_conditions_and_digits_that_decide_nothing_go() -> None:
     best = (x[:, 0] < 0.3).astype(int)
     cost = 1.0 - np.eye(2)[best]
     lower, upper = np.array([[-INF, 0.0012]]), np.array([[0.30001234, 0.99987]])
-    draft = simplified(Draft(np.array([1]), lower, upper, 0), x, cost, 0.01 * cost[:, 0].sum())
-    assert draft.lower.tolist() == [[-INF, -INF]]
-    assert draft.upper.tolist() == [[0.3, INF]]
+    short = simplified(uncounted(np.array([1]), lower, upper, 0), x, cost, 0.01 * cost[:, 0].sum())
+    assert short.lower.tolist() == [[-INF, -INF]]
+    assert short.upper.tolist() == [[0.3, INF]]
 
 
 def test_a_box_is_closed_below_and_open_above() -> None:
