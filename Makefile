@@ -4,7 +4,7 @@ BIN := .venv/bin
 KINDS := behavior body arbiter architecture world scenario project
 SOURCES := spec_schema compiler verifier runtime lcs specc tests
 
-.PHONY: help demo test check format bless study study-verify study-book study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-errand study-principles study-lcs bench bench-train bench-large schema gallery clean
+.PHONY: help demo test check format bless study study-verify study-book study-arbiters study-exclusion study-agents study-senses study-world study-paradigms study-errand study-learned study-principles study-lcs bench bench-train bench-large schema gallery clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -81,6 +81,9 @@ study-paradigms: .venv/ready ## three tasks by three paradigms of the same behav
 
 study-errand: .venv/ready ## the errand in 100 held-out worlds: by rules, and by chance
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.errand
+
+study-learned: .venv/ready ## the errand by arbiters that ALCSR and XCSR learn, five seeds each (hours)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.learned_errand
 
 study-lcs: .venv/ready ## ALCSR beside section 4.4 of the thesis, and in each of its readings
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.study.lcs experiments
