@@ -1,11 +1,12 @@
 """By how much a robot departs from the field through nothing but its lateness."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from runtime.arrays import Array, Booleans
+from runtime.arrays import Array, Booleans, Integers
 from runtime.machine import evaluate
 from runtime.program import Fidelity, Kind, Program
 from verifier.procedure.driving import Paths, Plans, driven_paths
@@ -36,7 +37,8 @@ def lateness_of(
 
     The program has no chance in it.
     From the paths' own states the field goes on for one horizon, at several places of a stage; not
-    at the beginning of a later one, where the robot still follows what was set before.
+    at the beginning of a later one, where the robot still follows what was set before, but right
+    after its mode changed, where it does so, too: there the field turns at once.
     """
     runs, stages = plans.held.shape[:2]
     span, stage = (round(t / every) for t in (fidelity.horizon, plans.seconds))
@@ -44,36 +46,51 @@ def lateness_of(
     worst = np.zeros((runs, stages))
     for k in range(stages):
         for begin in range(k * stage + (span if k else 0), (k + 1) * stage - span + 1, span):
-            apart = _departures(program, fidelity, (plans, paths, every), (k, begin, begin + span))
+            apart = _departures(program, fidelity, (plans, paths, every), k, np.full(runs, begin))
+            worst[:, k] = np.maximum(worst[:, k], apart)
+        for begins in _changed(program, paths, k * stage, (k + 1) * stage - span):
+            apart = _departures(program, fidelity, (plans, paths, every), k, begins)
             worst[:, k] = np.maximum(worst[:, k], apart)
     return worst
+
+
+def _changed(program: Program, paths: Paths, begin: int, end: int) -> Iterator[Integers]:
+    """(C,) the first sample after the first change of mode between two samples; else -1."""
+    if not program.field.guards or end <= begin:
+        return
+    modes = paths.register[:, begin : end + 1, program.register.index(program.field.mode)]
+    is_new = modes[:, 1:] != modes[:, :-1]
+    yield np.where(is_new.any(axis=1), begin + 1 + np.argmax(is_new, axis=1), -1)
 
 
 def _departures(
     program: Program,
     fidelity: Fidelity,
     driven: tuple[Plans, Paths, float],
-    window: tuple[int, int, int],
+    stage: int,
+    begins: Integers,
 ) -> Array:
-    """(C,) in tolerances at the end of one window; 0 where it can't be told."""
-    (plans, paths, every), (stage, begin, end) = driven, window
-    n, names = len(program.states), program.register
-    start, after = paths.register[:, begin, :n], paths.register[:, end, :n]
+    """(C,) in tolerances a horizon after samples (C,); 0 where that is -1, or can't be told."""
+    plans, paths, every = driven
+    n, names, rows = len(program.states), program.register, np.arange(len(begins))
+    span = max(round(fidelity.horizon / every), 1)
+    begin = np.maximum(begins, 0)
+    start, after = paths.register[rows, begin, :n], paths.register[rows, begin + span, :n]
     held = plans.held[:, stage : stage + 1].copy()
     held[:, 0, :n] = np.where(plans.inputs[:n], after, held[:, 0, :n])
     told = np.isfinite(start).all(axis=1) & np.isfinite(after).all(axis=1)
-    told &= paths.alive > end
+    told &= (begins >= 0) & (paths.alive > begin + span)
     shots = replace(
         plans,
         start=np.where(told[:, None], start, plans.start),
         held=np.where(told[:, None, None], held, plans.held[:, stage : stage + 1]),
-        seconds=(end - begin) * every,
+        seconds=span * every,
     )
     field = driven_paths(program, shots, every, SEED).register[:, -1, :n]
     for i, state in enumerate(program.states):
         if state.kind is Kind.DISCRETE:
-            stays = np.all(paths.register[:, begin : end + 1, i] == start[:, None, i], axis=1)
-            told &= stays & (field[:, i] == start[:, i])
+            through = paths.register[rows[:, None], begin[:, None] + np.arange(span + 1), i]
+            told &= np.all(through == start[:, None, i], axis=1) & (field[:, i] == start[:, i])
     apart = [np.abs(after[:, names.index(v)] - field[:, names.index(v)]) / t
              for v, t in fidelity.tolerance.items()]  # fmt: skip
     return np.where(told, np.nan_to_num(np.max(apart, axis=0)), 0.0)

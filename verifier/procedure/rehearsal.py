@@ -42,6 +42,8 @@ FASTEST: Final = 8.0
 SEEDS_APART: Final = 1000
 OTHER_SEEDS: Final = (100007, 200007)
 """Of rehearsals on other days."""
+SWITCHES: Final = 16
+"""A way out of a mode is taken so often: at ticks, it is late by anything up to a period."""
 PLENTY: Final = 24
 """So many recordings are not rehearsed again."""
 TRIES: Final = 4
@@ -83,7 +85,9 @@ def rehearsed(staging: Staging, names: Sequence[str]) -> tuple[int, Rehearsal]:
     planted = tuple(_planted(staging, name, repeats) for name in names)
     most = min(ENOUGH, MOST_RECORDINGS // len(staging.plans.start))
     while report.verdict is Verdict.PASS and not (
-        all(map(_is_caught, planted)) and _again(staging, names, repeats)
+        all(map(_is_caught, planted))
+        and all(way.count >= SWITCHES for way in _way_times(judgements))
+        and _again(staging, names, repeats)
     ):
         more = 2 * repeats
         if more > most:

@@ -18,8 +18,9 @@ LEAST_REACH: Final = 0.1
 """A sensor that reaches less than this share of the domain limits nothing."""
 FEWEST: Final = 0.05
 """Of the runs that are tried, so many are left at least to choose from."""
-SLOWER_STAGES: Final = (1.0, 4.0)
-"""Where lateness leaves too few runs, stages last so many times as long."""
+PACES: Final = {False: (1.0, 4.0), True: (2.0, 4.0)}
+"""So many times as long stages last as they need to, the second where the first leaves too few
+runs; slower where a late robot changes its mode, so that few windows begin just after that."""
 CANDIDATES: Final = 400
 """So many runs are tried, of which a few are chosen."""
 SEED: Final = 7
@@ -55,7 +56,7 @@ def usable_plans(
     told = {each.name: each.noise for each in signals}
     noise = np.array([told.get(state.name, 0.0) for state in program.states])
     first = None
-    for slower in SLOWER_STAGES:
+    for slower in PACES[bool(program.field.guards) and not robot.is_prompt]:
         tried = candidates(program, fidelity, robot.levels, CANDIDATES, every, slower)
         first = tried if first is None else first
         good = np.flatnonzero(

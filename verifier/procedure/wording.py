@@ -19,7 +19,7 @@ def procedure_sentences(procedure: Procedure) -> tuple[str, ...]:
 
 
 def run_sentences(procedure: Procedure) -> tuple[str, ...]:
-    """`run 1: start with distance 0.5 m, heading -0.4 rad; run 8 s; repeat 3 times` for each run."""
+    """`run 1: start with distance 0.5 m, heading -0.4 rad; run 8 s; twice in all` for each run."""
     return tuple(
         f"run {place}: {drive_phrase(procedure, drive)}"
         for place, drive in enumerate(procedure.drives, 1)

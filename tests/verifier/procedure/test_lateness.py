@@ -190,3 +190,20 @@ def test_a_reach_narrows_what_is_only_sensed_and_no_declared_region(phototaxis: 
 def test_runs_last_round_times() -> None:
     lasts = np.array([9.0, 2.85, 0.95, 0.31])
     assert rounded_down(lasts, 0.05).tolist() == pytest.approx([9.0, 2.5, 0.9, 0.31])
+
+
+def test_lateness_right_after_a_mode_changed_counts(avoid: Program) -> None:
+    """Where it turns round at 2 rad/s the old command stands for 0.05 s too long: 0.1 rad or more.
+
+    With readings near 0 the two turns differ by 4 rad/s, far away by a third of that.
+    """
+    left, right = (avoid.register.index(name) for name in ("left", "right"))
+    start = np.zeros((2, len(avoid.states)))
+    held = np.zeros((2, 1, len(avoid.states) + len(avoid.controls)))
+    start[:, left], start[:, right] = (0.4, 1.9), (0.4, 1.9)
+    held[:, 0, left], held[:, 0, right] = (0.0, 1.3), (0.4, 1.9)
+    plans = Plans(start, held, inputs_of(avoid), 3.0)
+    paths = paths_of(avoid, plans, Robot(0.1, 0.05), 0.025, 1)
+    near, far = lateness_of(avoid, fidelity_of(avoid), plans, paths, 0.025)[:, 0]
+    assert near > 1.0
+    assert far < 0.75
