@@ -108,4 +108,4 @@ def rounded(values: Array, width: float, scale: float) -> Array:
     least = width / scale / STEPS
     decade = 10.0 ** np.floor(np.log10(least))
     step = decade * next(k for k in (1.0, 2.0, 5.0, 10.0) if k * decade >= least * (1.0 - 1e-9))
-    return np.asarray(np.round(values / scale / step) * step * scale)
+    return np.asarray(np.round(values / scale / step) * step * scale + 0.0)  # no -0

@@ -74,7 +74,7 @@ def _how_to(program: Program, procedure: Procedure) -> Iterator[str]:
     """How a run is brought about: where it starts, what may be fed in, how a mode is entered."""
     changing = given(procedure)
     told = any(GOES_ON in row for row in legs_table(procedure).rows)
-    goes_on = f" {GOES_ON}: as the behavior moves it, or as follows from that." if told else ""
+    goes_on = f" In the table {GOES_ON} is: as the behavior moves it." if told else ""
     yield (
         "A start need not be met exactly, since what was measured counts: where the surroundings"
         f" do not allow it, take the nearest that they do.{goes_on}"
