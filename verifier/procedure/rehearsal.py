@@ -44,7 +44,7 @@ OTHER_SEEDS: Final = (100007, 200007)
 """Of rehearsals on other days."""
 SWITCHES: Final = 16
 """A way out of a mode is taken so often: at ticks, it is late by anything up to a period."""
-PLENTY: Final = 24
+PLENTY: Final = 16
 """So many recordings are not rehearsed again."""
 TRIES: Final = 4
 """So often a push is corrected until it carries that far."""
