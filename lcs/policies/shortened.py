@@ -9,6 +9,8 @@ from lcs.arrays import Array
 from lcs.policies.decision_list import DecisionList, holds
 from lcs.rules.digits import shortest_between
 
+DECIMALS: Final = 9
+"""Places that differ beyond these are the same: 2.9999999999 m and 3 m differ by rounding."""
 MARGIN: Final = 0.05
 """Of a gap between two lived places, on either side of a bound in it."""
 
@@ -22,7 +24,7 @@ def shortened(rules: DecisionList, x: Array) -> DecisionList:
     beyond it, it is dropped.
     """
     made = dataclasses.replace(rules, lower=rules.lower.copy(), upper=rules.upper.copy())
-    left = x
+    left = np.round(x, DECIMALS)
     for r in range(len(made)):
         own = slice(r, r + 1)
         for i in range(x.shape[1]):

@@ -67,6 +67,15 @@ def test_short_bounds_decide_the_same_wherever_anything_was_lived(
     assert (short.first(x) == rules.first(x)).all()
 
 
+def test_a_bound_in_the_rounding_of_one_place_moves_to_beside_it() -> None:
+    one = np.array([1])
+    lower, upper = np.array([[3.0 - 1e-14]]), np.array([[np.inf]])
+    rules = DecisionList(one, lower, upper, one, one, otherwise=0)
+    short = shortened(rules, np.array([[1.0], [2.9], [3.0 - 2e-14], [3.0]]))
+
+    assert short.lower.tolist() == [[2.95]]
+
+
 def test_bounds_get_short_and_those_that_no_place_asks_for_are_dropped() -> None:
     x = np.array([[0.1], [0.28], [0.35], [0.8]])
     bounds = np.array([[0.05123]]), np.array([[0.3123456]])
