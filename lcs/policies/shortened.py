@@ -23,8 +23,8 @@ def shortened(rules: DecisionList, x: Array) -> DecisionList:
     several to the one in the middle, so 0.5 where all places are 0 or 1. Without such a place
     beyond it, it is dropped.
     """
-    made = dataclasses.replace(rules, lower=rules.lower.copy(), upper=rules.upper.copy())
-    left = np.round(x, DECIMALS)
+    lower, upper, left = (np.round(each, DECIMALS) for each in (rules.lower, rules.upper, x))
+    made = dataclasses.replace(rules, lower=lower, upper=upper)
     for r in range(len(made)):
         own = slice(r, r + 1)
         for i in range(x.shape[1]):
