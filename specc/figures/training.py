@@ -75,9 +75,7 @@ def draw_training(
 
 def _kept(one: Improving) -> str:
     reward, success = one.tried[one.best], one.tried_success[one.best]
-    return (
-        f"what is kept, in its last race:\nreward {number(reward)}, success {100.0 * success:.0f} %"
-    )
+    return f"what is kept, as it won:\nreward {number(reward)}, success {100.0 * success:.0f} %"
 
 
 def _draw(axes: Axes, one: Improving, explored: Array, tried: Array, palette: Palette) -> None:

@@ -33,7 +33,8 @@ def training_record(trained: Trained) -> dict[str, Any]:
         "settings": asdict(begun.settings),
         "held_out": begun.held_out,
         "arbiter": arbiter_record(trained.arbiter),
-        "best": course.generations.index(course.best) + 1,
+        "best": course.generations.index(trained.best) + 1,
+        "final": asdict(trained.final),
         "generations": [
             {
                 "episodes": each.episodes,
@@ -58,13 +59,13 @@ def training_record(trained: Trained) -> dict[str, Any]:
 def _head(trained: Trained) -> str:
     settings, course = trained.begun.settings, trained.course
     trains = training_of(trained.scenario).arbiter
-    best, count = course.best, len(course.generations)
+    best, count = trained.best, len(course.generations)
     lived = f"{counted(best.episodes, 'episode')}, {counted(best.decisions, 'decision')}"
     lines = [f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"]
     lines.append(
         wrapped(
-            f"from {lived}; the list won the last race of {counted(count, 'generation')}, each in "
-            f"other {counted(settings.tried_in, 'world')}{_ending(trained)}"
+            f"from {lived}; the best in {counted(2 * settings.tried_in, 'world')} of all that won "
+            f"a race in {counted(count, 'generation')}{_ending(trained)}"
         )
     )
     return "\n".join(lines)
@@ -118,7 +119,7 @@ def _failures(trained: Trained) -> list[str]:
 
 
 def _compaction_record(trained: Trained) -> dict[str, Any]:
-    before, after = len(trained.table), len(trained.course.best.rules)
+    before, after = len(trained.table), len(trained.best.rules)
     record: dict[str, Any] = {"rules_before": before, "rules": after}
     if trained.judged:
         few, votes = trained.judged[0].trial, trained.judged[1].trial

@@ -13,6 +13,8 @@ from specc.training.workers import Workers
 
 SHARES: Final = (0.125, 0.375, 1.0)
 """Of the worlds, those that lists have been tried in after each heat."""
+SURE: Final = 1.3
+"""Standard errors by which who is better has to be, to be so for sure: nine times of ten."""
 LEFT: Final = (6, 2)
 """Challengers that go on to the next heat."""
 
@@ -25,6 +27,18 @@ class Racer:
     rules: DecisionList
     is_champion: bool = False
     episodes: list[Episode] = field(default_factory=list)
+
+    def beats(self, other: "Racer") -> bool:
+        """Whether it surely did better in the same worlds: by more than chance would, mostly.
+
+        By how often it succeeded; where both did in the same worlds, by reward.
+        """
+        success = np.array([each.succeeded for each in self.episodes], np.float64)
+        more = success - [each.succeeded for each in other.episodes]
+        if not more.any():
+            more = np.array([each.total for each in self.episodes])
+            more -= [each.total for each in other.episodes]
+        return bool(more.mean() > SURE * more.std() / np.sqrt(len(more)))
 
     @property
     def standing(self) -> tuple[float, float]:
@@ -49,9 +63,10 @@ def raced(
     workers: Workers,
     tell: Progress,
 ) -> Race:
-    """Who does best in all of the worlds; of equals the champion, then who comes first.
+    """Who does best in all of the worlds; of equals who comes first.
 
-    All that go on are tried in the same worlds, so that none wins by easier ones.
+    All that go on are tried in the same worlds, so that none wins by easier ones. The champion
+    stays where the best does not beat it: of many that are as good, one is lucky in any race.
     """
     racers = [Racer(rules) for rules in challengers]
     if champion is not None:
@@ -68,7 +83,10 @@ def raced(
             racer.episodes += [next(episodes) for _ in range(upto - done)]
         done = upto
     decisions = sum(len(each.steps) for racer in racers for each in racer.episodes)
-    return Race(max(running, key=lambda racer: racer.standing), decisions)
+    winner = max(running, key=lambda racer: racer.standing)
+    if champion is not None and not winner.beats(racers[0]):
+        winner = racers[0]
+    return Race(winner, decisions)
 
 
 def _fastest(running: Sequence[Racer], left: int) -> Iterator[Racer]:

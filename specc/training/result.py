@@ -23,7 +23,7 @@ from specc.training.judging import Judged, judged
 from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
-from specc.training.training import Course, policy_of
+from specc.training.training import Course, Generation, Trial, best_of, policy_of
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
@@ -36,9 +36,9 @@ class Trained:
     """What came of a training.
 
     scenario: as it was begun with. source, edited: the arbiter's text, and that with its rules.
-    arbiter: compiled from the latter; warnings: on the way. course: all generations. table: all
-    rules that those of the best were chosen from. judged: these beside others, where any worlds
-    were held out.
+    arbiter: compiled from the latter; warnings: on the way. course: all generations. best: that
+    whose rules these are; final: how these did in the last race. table: all rules that lists of
+    that generation were chosen from. judged: these beside others, where any worlds were held out.
     """
 
     begun: Begun
@@ -48,6 +48,8 @@ class Trained:
     arbiter: Arbiter
     warnings: tuple[Diagnostic, ...]
     course: Course
+    best: Generation
+    final: Trial
     table: RuleTable
     judged: tuple[Judged, ...]
     pace: Pace
@@ -72,8 +74,9 @@ def concluded(
         workers: live the episodes in which it is judged.
         tell: is told what is done, how much of it, and of how much.
     """
+    best, final = best_of(course, begun.settings, workers, tell)
     tell("learning once more what was best", 0, 1)
-    rules, table = course.best.rules, best_table(course, scenario, begun)
+    rules, table = best.rules, table_of(best, course, scenario, begun)
     before = trained_arbiter(scenario)
     beside = judged((rules, table), before, begun.held_out, workers, tell) if begun.held_out else ()
     edited = with_rules(loaded, before, begun.settings.learner, rules)
@@ -88,6 +91,8 @@ def concluded(
         arbiter=arbiter,
         warnings=warnings,
         course=course,
+        best=best,
+        final=final,
         table=table,
         judged=beside,
         pace=pace,
@@ -95,9 +100,8 @@ def concluded(
     )
 
 
-def best_table(course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
-    """All rules that those of the best policy were chosen from, learnt again: they are not kept."""
-    best = course.best
+def table_of(best: Generation, course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
+    """All rules that lists of a generation were chosen from, learnt again: they are not kept."""
     number = course.generations.index(best)
     return policy_of(course.lived[: best.episodes], scenario, begun.settings, number).tables[0]
 

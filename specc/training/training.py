@@ -99,7 +99,7 @@ class Course:
     generations: list[Generation] = field(default_factory=list)
 
     @property
-    def best(self) -> Generation:
+    def champion(self) -> Generation:
         """The generation that found the list which won the last race."""
         return next(each for each in reversed(self.generations) if each.is_new)
 
@@ -116,7 +116,7 @@ class Course:
 
     def is_stale(self, settings: Settings) -> bool:
         """Whether no other list won for long enough."""
-        behind = len(self.generations) - 1 - self.generations.index(self.best)
+        behind = len(self.generations) - 1 - self.generations.index(self.champion)
         return behind >= settings.patience
 
 
@@ -167,7 +167,7 @@ def _generation(
     clock.append(perf_counter())
     tell(f"learning{standing}", after, settings.episodes)
     lived = [*course.lived, *(episode.steps for episode in episodes)]
-    champion = course.best.rules if course.generations else None
+    champion = course.champion.rules if course.generations else None
     challengers = challengers_of(lived, champion, scenario, settings, len(course.generations))
     clock.append(perf_counter())
     worlds = choosing_worlds(len(course.generations), settings)
@@ -210,6 +210,20 @@ def challengers_of(
     variation = Variation(found.lists, x, actions, settings.rules, chance)
     varied = (variation.of(champion) for _ in range(settings.varied))
     return (*found.lists, *(found.counted(shortened(rules, x)) for rules in varied))
+
+
+def best_of(
+    course: Course, settings: Settings, workers: Workers, tell: Progress
+) -> tuple[Generation, Trial]:
+    """The generation whose list is best of all that won a race, and how it did in the last race.
+
+    That one is twice as long as those before, in worlds of its own.
+    """
+    won = [each for each in course.generations if each.is_new]
+    after = len(course.generations)
+    worlds = choosing_worlds(after, settings) + choosing_worlds(after + 1, settings)
+    winner = raced(None, [each.rules for each in won], worlds, workers, tell).winner
+    return next(each for each in won if each.rules is winner.rules), trial_of(winner.episodes)
 
 
 def choosing_worlds(number: int, settings: Settings) -> list[int]:

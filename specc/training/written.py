@@ -65,7 +65,7 @@ def _curves(trained: Trained, style: Style) -> Picture:
         tried_success=np.array([each.tried.success for each in every]),
         low=low,
         high=high,
-        best=len(every) - 1,
+        best=every.index(trained.best),
         worlds=settings.tried_in,
     )
     about = (

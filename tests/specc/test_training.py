@@ -18,7 +18,7 @@ from specc.training.episode import Task, lived, trained_arbiter
 from specc.training.folder import Begun, begin_in, scenario_in
 from specc.training.judging import AsItWas, judged
 from specc.training.pace import paced
-from specc.training.result import best_table, text_of
+from specc.training.result import table_of, text_of
 from specc.training.settings import Settings
 from specc.training.spelled import with_rules
 from specc.training.training import (
@@ -119,7 +119,8 @@ def test_a_checkpoint_that_is_damaged_anywhere_is_refused(whole: Course, tmp_pat
 
 
 def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course) -> None:
-    learnt = whole.best.rules, best_table(whole, pen, Begun("", SMALL, 10))
+    best = whole.champion
+    learnt = best.rules, table_of(best, whole, pen, Begun("", SMALL, 10))
     with Workers(pen, 1) as workers:
         beside = judged(learnt, trained_arbiter(pen), 10, workers, in_silence)
 
@@ -143,7 +144,7 @@ def test_the_arbiter_with_its_rules_decides_in_a_run_as_the_list(
     whole: Course, tmp_path: Path
 ) -> None:
     scenario = pen_in(tmp_path)
-    rules, seed = whole.best.rules, world(For.JUDGING, 0)
+    rules, seed = whole.champion.rules, world(For.JUDGING, 0)
     assert len(rules) > 0
     text = with_rules(text_of(scenario, "alcsr"), trained_arbiter(scenario), "alcsr", rules).text
     (tmp_path / "choose.yaml").write_text(text)
@@ -208,7 +209,7 @@ def test_it_stops_where_the_same_list_wins_for_long_enough() -> None:
     every = [generation(10 * i, is_new=i <= 2) for i in range(1, 5)]
     course = Course([NOTHING] * 40, every)
 
-    assert course.best is every[1]
+    assert course.champion is every[1]
     assert course.is_over(settings)
     assert not Course(course.lived, every[:3]).is_over(settings)
     assert Course([NOTHING] * 100, every[:1]).is_over(settings)

@@ -1,13 +1,16 @@
 """Races of lists: who wins, in which worlds, and what a champion has to defend."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lcs.policies.decision_list import DecisionList, always
 from runtime.scenario import Scenario
-from specc.training.race import LEFT, raced
+from specc.training.race import LEFT, Racer, raced
 from specc.training.workers import Workers
 from tests.specc.training_scenes import pen_in
+from verifier.report.requirement_results import Outcome
 
 GO, TURN = 0, 1
 WORLDS = range(8)
@@ -44,6 +47,20 @@ def test_of_equals_the_champion_stays(pen: Scenario) -> None:
     with Workers(pen, 1) as workers:
         race = raced(careful(0.6), [careful(0.6), always(GO, 1)], WORLDS, workers, in_silence)
     assert race.winner.is_champion
+
+
+def test_who_is_only_a_little_luckier_does_not_beat_the_champion(pen: Scenario) -> None:
+    with Workers(pen, 1) as workers:
+        good = raced(None, [careful(0.6)], WORLDS, workers, in_silence).winner
+    failed = replace(good.episodes[0], outcomes=(Outcome.VIOLATED,))
+
+    def with_failures(count: int) -> Racer:
+        return Racer(good.rules, episodes=[*([failed] * count), *good.episodes[count:]])
+
+    assert all(each.succeeded for each in good.episodes)
+    assert good.beats(with_failures(3))
+    assert not good.beats(with_failures(1))
+    assert not good.beats(good)
 
 
 def test_only_few_go_on_to_all_worlds_and_all_decisions_are_counted(pen: Scenario) -> None:
