@@ -128,7 +128,7 @@ def lateness_sentence(late: Lateness) -> str:
     later = f"reading every {seconds(late.slower * late.period)}"
     if late.response_time:
         later += f" and acting {seconds(late.slower * late.response_time)} later"
-    return f"{told}; {later} would break it"
+    return f"{told}; {later} may break it"
 
 
 def _planted(each: Planted, unit: Unit) -> str:

@@ -44,7 +44,8 @@ def _procedure(program: Program, procedure: Procedure, file: str) -> Iterator[Bl
     worth = "the verifier can decide by them" if decides else "but see below what they leave open"
     yield Paragraph(f"{_how_often(procedure)}: {worth}. {_held(procedure)}")
     yield legs_table(procedure)
-    yield Paragraph(f"For programs: [{file}]({file}), in SI.", is_small=True)
+    of_rows = "a value holds from its row on, and the last row of a run is its end"
+    yield Paragraph(f"For programs: [{file}]({file}), in SI; {of_rows}.", is_small=True)
     yield Bullets(tuple(_how_to(program, procedure)))
     yield Paragraph(_sentence(log_sentence(procedure)))
     yield Bullets(tuple(map(_sentence, (*rehearsal_sentences(procedure), *procedure.remarks))))
@@ -77,7 +78,8 @@ def _how_to(program: Program, procedure: Procedure) -> Iterator[str]:
     goes_on = f" In the table {GOES_ON} is: as the behavior moves it." if told else ""
     yield (
         "A start need not be met exactly, since what was measured counts: where the surroundings"
-        f" do not allow it, take the nearest that they do.{goes_on}"
+        " do not allow it, take the nearest that they do. Begin to log once the robot moves: what"
+        f" it waits for its first command counts as late.{goes_on}"
     )
     moved = [f"`{s.name}`" for s in procedure.signals if is_moved(s) and s.name in changing]
     if moved:
