@@ -17,13 +17,14 @@ from spec_schema.editing.edits import EditError
 from spec_schema.load import Loaded, load, load_source
 from spec_schema.source import Source
 from specc.faults import fault
+from specc.training.challengers import policy_of
 from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
 from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
-from specc.training.training import Course, Generation, Trial, best_of, policy_of
+from specc.training.training import Course, Generation, Trial, best_of
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 

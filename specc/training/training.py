@@ -8,16 +8,13 @@ from typing import Final, final
 import numpy as np
 import numpy.typing as npt
 
-from lcs.arrays import Array, Integers
+from lcs.arrays import Integers
 from lcs.policies.decision_list import DecisionList
-from lcs.policies.learner import Found, found_policy
 from lcs.policies.policy import Policy
-from lcs.policies.shortened import shortened
-from lcs.policies.steps import Steps, joined
-from lcs.policies.variations import Variation
-from runtime.arbiter import Arbiter
+from lcs.policies.steps import Steps
 from runtime.scenario import Scenario
-from specc.training.episode import Episode, Task, trained_arbiter, training_of
+from specc.training.challengers import challengers_of
+from specc.training.episode import Episode, Task
 from specc.training.living import Progress, live_through
 from specc.training.race import raced
 from specc.training.settings import Settings
@@ -26,8 +23,7 @@ from specc.training.worlds import For, world
 
 EXPLORING: Final = "exploring"
 AGAIN: Final = 2
-VARYING: Final = 3
-"""What sets the chance of which failures are lived again, and of variations, apart from other."""
+"""What sets the chance of which failures are lived again apart from other chance."""
 
 BEFORE: Final = 30
 """Decisions before a failure, at most, at which something else is tried."""
@@ -191,27 +187,6 @@ def _generation(
     )
 
 
-def challengers_of(
-    lived: Sequence[Steps],
-    champion: DecisionList | None,
-    scenario: Scenario,
-    settings: Settings,
-    number: int,
-) -> tuple[DecisionList, ...]:
-    """The lists that may be better than the best so far: what is learnt now, and like the best.
-
-    What is told of the rules of the latter, how often they were right, is of what is known now.
-    """
-    found = policy_of(lived, scenario, settings, number)
-    if champion is None:
-        return found.lists
-    chance = np.random.default_rng([settings.seed, number, VARYING])
-    x, actions = joined(lived).x, len(trained_arbiter(scenario).choices)
-    variation = Variation(found.lists, x, actions, settings.rules, chance)
-    varied = (variation.of(champion) for _ in range(settings.varied))
-    return (*found.lists, *(found.counted(shortened(rules, x)) for rules in varied))
-
-
 def best_of(
     course: Course, settings: Settings, workers: Workers, tell: Progress
 ) -> tuple[Generation, Trial]:
@@ -254,31 +229,6 @@ def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
         first_try = max(failure.decisions - 1 - int(chance.integers(BEFORE)), 0)
         tasks[place] = replace(tasks[place], world=failure.world, first_try=first_try)
     return tasks
-
-
-def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, number: int) -> Found:
-    """What is learnt from all steps so far, in the generation of that number.
-
-    Rules have bounds of few digits, and decide on these steps as those that were learnt.
-    """
-    arbiter, steps = trained_arbiter(scenario), joined(lived)
-    found = found_policy(
-        steps,
-        ranges_of(arbiter),
-        len(arbiter.choices),
-        discount=training_of(scenario).discount,
-        learner=settings.learner,
-        seed=settings.seed + number,
-        most=settings.rules,
-    )
-    return replace(found, lists=tuple(shortened(rules, steps.x) for rules in found.lists))
-
-
-def ranges_of(arbiter: Arbiter) -> tuple[Array, Array]:
-    """The lowest and the highest of what it reads, (m,) each, SI; of a value by name its index."""
-    low = [0.0 if each.values else each.low for each in arbiter.reads]
-    high = [float(len(each.values) - 1) if each.values else each.high for each in arbiter.reads]
-    return np.array(low), np.array(high)
 
 
 def trial_tasks(policy: Policy, worlds: int, purpose: For, explore: float = 0.0) -> list[Task]:

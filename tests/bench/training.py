@@ -12,10 +12,11 @@ from time import process_time
 from typing import Final
 
 from specc.loading import load_scenario
+from specc.training.challengers import policy_of
 from specc.training.episode import Task, lived
 from specc.training.pace import paced
 from specc.training.settings import Settings
-from specc.training.training import AtRandom, policy_of
+from specc.training.training import AtRandom
 from specc.training.worlds import For, world
 
 ERRAND: Final = Path(__file__).parents[2] / "specs" / "scenarios" / "errand_learned.yaml"

@@ -112,7 +112,7 @@ def test_ctrl_c_says_how_it_goes_on(
         raise KeyboardInterrupt
 
     begun()
-    monkeypatch.setattr("specc.training.training.policy_of", interrupted)
+    monkeypatch.setattr("specc.training.challengers.policy_of", interrupted)
 
     assert main(RESUME) == 130
     assert capsys.readouterr().err.endswith(

@@ -13,6 +13,7 @@ from runtime.run import run
 from runtime.scenario import Scenario
 from spec_schema.diagnostics import SpecError
 from specc.loading import load_scenario
+from specc.training.challengers import policy_of
 from specc.training.checkpoint import keep, taken_up
 from specc.training.episode import Task, lived, trained_arbiter
 from specc.training.folder import Begun, begin_in, scenario_in
@@ -31,7 +32,6 @@ from specc.training.training import (
     Trial,
     choosing_worlds,
     exploring_tasks,
-    policy_of,
 )
 from specc.training.workers import Workers
 from specc.training.worlds import For, world

@@ -1,0 +1,67 @@
+"""The lists that may be better than the best so far: what is learnt, and variations of the best."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from lcs.arrays import Array
+from lcs.policies.decision_list import DecisionList
+from lcs.policies.learner import Found, found_policy
+from lcs.policies.shortened import shortened
+from lcs.policies.steps import Steps, joined
+from lcs.policies.variations import Variation
+from runtime.arbiter import Arbiter
+from runtime.scenario import Scenario
+from specc.training.episode import trained_arbiter, training_of
+from specc.training.settings import Settings
+
+VARYING: Final = 3
+"""What sets the chance of variations apart from other chance."""
+
+
+def challengers_of(
+    lived: Sequence[Steps],
+    champion: DecisionList | None,
+    scenario: Scenario,
+    settings: Settings,
+    number: int,
+) -> tuple[DecisionList, ...]:
+    """The lists that may be better than the best so far: what is learnt now, and like the best.
+
+    What is told of the rules of the latter, how often they were right, is of what is known now.
+    """
+    found = policy_of(lived, scenario, settings, number)
+    if champion is None:
+        return found.lists
+    chance = np.random.default_rng([settings.seed, number, VARYING])
+    x, actions = joined(lived).x, len(trained_arbiter(scenario).choices)
+    variation = Variation(found.lists, x, actions, settings.rules, chance)
+    varied = (variation.of(champion) for _ in range(settings.varied))
+    return (*found.lists, *(found.counted(shortened(rules, x)) for rules in varied))
+
+
+def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, number: int) -> Found:
+    """What is learnt from all steps so far, in the generation of that number.
+
+    Rules have bounds of few digits, and decide on these steps as those that were learnt.
+    """
+    arbiter, steps = trained_arbiter(scenario), joined(lived)
+    found = found_policy(
+        steps,
+        ranges_of(arbiter),
+        len(arbiter.choices),
+        discount=training_of(scenario).discount,
+        learner=settings.learner,
+        seed=settings.seed + number,
+        most=settings.rules,
+    )
+    return replace(found, lists=tuple(shortened(rules, steps.x) for rules in found.lists))
+
+
+def ranges_of(arbiter: Arbiter) -> tuple[Array, Array]:
+    """The lowest and the highest of what it reads, (m,) each, SI; of a value by name its index."""
+    low = [0.0 if each.values else each.low for each in arbiter.reads]
+    high = [float(len(each.values) - 1) if each.values else each.high for each in arbiter.reads]
+    return np.array(low), np.array(high)
