@@ -11,6 +11,7 @@ from lcs.rules.digits import shortest_between
 
 DECIMALS: Final = 9
 """Places that differ beyond these are the same: 2.9999999999 m and 3 m differ by rounding."""
+BESIDE: Final = 10.0**-DECIMALS
 MARGIN: Final = 0.05
 """Of a gap between two lived places, on either side of a bound in it."""
 
@@ -51,8 +52,8 @@ def _upper(bound: float, values: Array) -> float:
 
 def _between(below: Array, above: Array, bound: float) -> float:
     """A number of few digits that parts the values as the bound does, and is next to neither."""
-    if not len(below) or not len(above):
-        return bound
+    if not len(below) or not len(above):  # further from all, since one may have been rounded to it
+        return bound + (BESIDE if len(below) else -BESIDE)
     low, high = float(below.max()), float(above.min())
     margin = MARGIN * (high - low)
     short = shortest_between(low + margin, high - margin, 0.5 * (low + high))
