@@ -23,6 +23,7 @@ from verifier.report.arbitration import Arbitration
 from verifier.report.examination import Examination
 from verifier.report.report import Report, Standing, VariableResult, Verdict
 from verifier.report.requirement_results import Outcome, RequirementResult
+from verifier.report.situations import stands
 from verifier.report.wording import LEFT_OUT, percent, quantity, seconds
 
 NODE_TITLES = ("node", "spec", "verdict", "judged", "what was found")
@@ -155,7 +156,7 @@ def _departs(report: Report, result: VariableResult) -> str:
     weak = ""
     if report.verdict is Verdict.PASS and result.hardly_moves:
         weak = f" (weak evidence: it moved by {quantity(result.moved, result.unit)} only)"
-    return f"{result.name} departs by {departure}, {allowed}: {result.standing}{weak}"
+    return f"{result.name} departs by {departure}, {allowed}: {stands(result)}{weak}"
 
 
 @final

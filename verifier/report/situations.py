@@ -1,7 +1,7 @@
 """How a variable departs, and in which situations, in words."""
 
 from runtime.program import Unit
-from verifier.report.report import RegionMean, VariableResult
+from verifier.report.report import RegionMean, Standing, VariableResult
 from verifier.report.wording import listed, number, quantity, span
 
 
@@ -23,6 +23,13 @@ def exceeded(result: VariableResult, units: dict[str, Unit]) -> str:
         f" {number(figure.horizon)} s ({quantity(result.tolerance, unit)} is allowed){share}"
         f"{_worst(result, units)}"
     )
+
+
+def stands(result: VariableResult) -> str:
+    """Where a variable stands against its tolerance, in a few words."""
+    if result.standing is Standing.EXCEEDED and result.declared.standing is not Standing.EXCEEDED:
+        return f"{result.standing} in some situations"
+    return str(result.standing)
 
 
 def _worst(result: VariableResult, units: dict[str, Unit]) -> str:

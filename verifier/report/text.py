@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from verifier.report.layout import INDENT, bullets, section, table, wrapped
 from verifier.report.report import Coverage, HorizonFigure, Report, VariableResult
+from verifier.report.situations import stands
 from verifier.report.wording import listed, number, percent, seconds, shown, span, suffix
 
 
@@ -58,7 +59,7 @@ def _row(result: VariableResult) -> tuple[str, ...]:
         span(figure.interval.low, figure.interval.high, unit).removesuffix(suffix(unit)),
         shown(result.scatter, unit),
         shown(result.noise.sigma, unit),
-        str(result.standing),
+        stands(result),
     )
 
 

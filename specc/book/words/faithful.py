@@ -43,7 +43,7 @@ def _fidelity(program: Program) -> list[Block]:
         )
         for name, value in of.tolerance.items()
     )
-    titles = ("state", "tolerance", "scatter allowed beside", "to be recorded in")
+    titles = ("state", "tolerance", "scatter allowed beside", "recordings have to cover")
     blocks: list[Block] = [
         Paragraph(
             f"From any measured state the field predicts where the robot is {seconds(of.horizon)}"

@@ -16,6 +16,8 @@ from verifier.procedure.wording import log_sentence, rehearsal_sentences
 from verifier.report.wording import exact, listed, number, seconds
 
 TITLE = "Test procedure"
+WORTH = "a faithful robot passes by them, and one that is off by two tolerances fails"
+"""Smaller faults may stay open: then the verifier asks for more of the same."""
 
 
 def procedure_section(program: Program, trial: Trial, file: str) -> Section:
@@ -41,7 +43,7 @@ def _procedure(program: Program, procedure: Procedure, file: str) -> Iterator[Bl
         return
     found = procedure.rehearsal
     decides = found is not None and found.decides
-    worth = "the verifier can decide by them" if decides else "but see below what they leave open"
+    worth = WORTH if decides else "but see below what they leave open"
     yield Paragraph(f"{_how_often(procedure)}: {worth}. {_held(procedure)}")
     yield legs_table(procedure)
     of_rows = "a value holds from its row on, and the last row of a run is its end"

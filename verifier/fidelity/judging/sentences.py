@@ -26,6 +26,8 @@ GROWN = 3.0
 """Noise that grows so many times over the horizon is worth a word about the field."""
 HOPELESS = 100.0
 """Where so many times the data were needed, more data is no advice."""
+LEAST_MORE = 1.5
+"""Data that left a verdict open are asked for this many times over at least: estimates are rough."""
 
 
 def what_is_systematic() -> str:
@@ -217,7 +219,7 @@ def times_more(result: VariableResult) -> float:
         if result.worst is not None:
             mean, interval = result.worst.mean, result.worst.interval
         far, gap = 0.5 * (interval.high - interval.low), at.tolerance - abs(mean)
-    return max(1.0, float((far / (gap or 1e-300)) ** 2))
+    return max(LEAST_MORE, float((far / (gap or 1e-300)) ** 2))
 
 
 def _allowed(result: VariableResult) -> float:
