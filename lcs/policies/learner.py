@@ -127,8 +127,7 @@ def found_policy(
         tables.append(made.rules())
         offer, some = offer_of(tables[-1]), drawn(chance, np.ones(len(x)), LISTED)
         lists += (
-            listed(offer, x[some], cost[some], otherwise, tolerance=tolerance, most=most)
-            for otherwise in range(actions)
+            listed(offer, x[some], cost[some], otherwise, most=most) for otherwise in range(actions)
         )
     found = Found(tuple(lists), tuple(tables), x, good)
     return replace(found, lists=tuple(map(found.counted, lists)))

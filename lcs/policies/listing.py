@@ -28,42 +28,37 @@ class Offer:
     upper: Array
 
 
-def listed(
-    offer: Offer, x: Array, cost: Array, otherwise: int, *, tolerance: float, most: int
-) -> DecisionList:
-    """The list of at most `most` rules that loses little.
+def listed(offer: Offer, x: Array, cost: Array, otherwise: int, *, most: int) -> DecisionList:
+    """The list of at most `most` rules that loses little; how often they are right is not counted.
 
     Args:
         offer: what it is made of.
         x: examples (T, n).
         cost: what each action loses there against the best one, (T, A), 0 or more.
         otherwise: the action where no rule holds.
-        tolerance: an action that loses no more counts as right.
         most: rules.
     """
     held = holds(offer.lower, offer.upper, x)
     saves = cost[:, [otherwise]] - cost  # (T, A), each action in the place of `otherwise`
     least = WORTH_A_RULE * float(cost[:, otherwise].sum())
     chosen: list[int] = []
-    left = np.ones(len(x), np.bool_)
-    while len(chosen) < most:
-        best, saved = _best(offer.action, held[:, left], saves[left])
-        if best < 0 or saved <= least:
+    saved = _saved(offer.action, held, saves)
+    while len(saved) and len(chosen) < most:
+        best = int(saved.argmax())
+        if saved[best] <= least:
             break
         chosen.append(best)
-        left &= ~held[best]
+        now = held[best].copy()
+        saved -= _saved(offer.action, held[:, now], saves[now])
+        held[:, now] = False
     rules = uncounted(offer.action[chosen], offer.lower[chosen], offer.upper[chosen], otherwise)
-    return counted(simplified(rules, x, cost, least), x, cost <= tolerance)
+    return simplified(rules, x, cost, least)
 
 
-def _best(action: Integers, held: Booleans, saves: Array) -> tuple[int, float]:
-    """The box that saves most, and how much; -1 where there is none."""
-    if not held.size:
-        return -1, 0.0
-    inside = held.astype(np.float64) @ saves
-    own = inside[np.arange(len(action)), action]
-    best = int(own.argmax())
-    return best, float(own[best])
+def _saved(action: Integers, held: Booleans, saves: Array) -> Array:
+    """What each of C boxes saves by its action where it holds (C, T), as (C,)."""
+    inside: Array = held.astype(np.float64) @ saves
+    return inside[np.arange(len(action)), action]
 
 
 def counted(rules: DecisionList, x: Array, good: Booleans) -> DecisionList:

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lcs.policies.decision_list import DecisionList, always, holds, uncounted
-from lcs.policies.listing import Offer, listed
+from lcs.policies.listing import Offer, counted, listed
 from lcs.policies.simplifying import simplified
 
 INF = np.inf
@@ -44,7 +44,7 @@ def test_a_list_has_no_more_rules_than_asked_for_and_loses_no_more_than_no_rule(
     task: tuple[Offer, np.ndarray, np.ndarray], most: int
 ) -> None:
     offer, x, cost = task
-    rules = listed(offer, x, cost, 1, tolerance=0.1, most=most)
+    rules = listed(offer, x, cost, 1, most=most)
     assert len(rules) <= most
     lost = cost[np.arange(len(x)), rules.decide(x)].sum()
     alone = cost[:, 1].sum()
@@ -57,7 +57,7 @@ def test_counts_are_of_the_places_where_a_rule_is_the_first(
     task: tuple[Offer, np.ndarray, np.ndarray],
 ) -> None:
     offer, x, cost = task
-    rules = listed(offer, x, cost, 0, tolerance=0.1, most=6)
+    rules = counted(listed(offer, x, cost, 0, most=6), x, cost <= 0.1)
     first = rules.first(x)
     for rule in range(len(rules)):
         good = cost[first == rule, rules.action[rule]] <= 0.1
@@ -78,7 +78,7 @@ def test_the_boxes_that_are_right_are_found_among_many() -> None:
         np.concatenate([ends[0], true_lower]),
         np.concatenate([ends[1], true_upper]),
     )
-    rules = listed(offer, x, cost, 0, tolerance=0.5, most=8)
+    rules = listed(offer, x, cost, 0, most=8)
     assert len(rules) == 2
     assert rules.decide(x).tolist() == best.tolist()
     assert rules.wrong.sum() == 0
