@@ -86,8 +86,6 @@ def verify(
 
     `specc verify book/ runs/*.mcap --only seek,avoid`
     """
-    from specc.verifying.runs import distinct, verify_each
-
     _refuse_early(output)
     named = one_spec(spec)
     if (traces[0] / BOOK).is_file():
@@ -108,18 +106,44 @@ def verify(
         )
     if only is not None or procedures:
         raise typer.BadParameter("--only and --procedures are of a book, which comes first")
+    return _verify_recordings(
+        traces,
+        named,
+        output,
+        form,
+        clock,
+        quick=quick,
+        strict=strict,
+        allow_code=allow_code,
+    )
+
+
+def _verify_recordings(
+    traces: Sequence[Path],
+    spec: Path | None,
+    output: Sequence[Path],
+    form: ReportFormat,
+    clock: Clock,
+    *,
+    quick: bool,
+    strict: bool,
+    allow_code: bool,
+) -> int:
+    """Judge recordings, each by its own spec or all by one; the exit status."""
+    from specc.verifying.runs import distinct, verify_each
+
     given, traces = traces, [Path(each) for each in distinct(traces)]
     if len(traces) < len(given):
         say("a recording that is named more than once counts once", "bold yellow")
-    warmed(named)
+    warmed(spec)
     judge = partial(
         verify_each,
         traces,
-        named,
+        spec,
         clock.value,
         allow_code=allow_code,
         strict=strict,
-        depth="verdict" if quick else _depth(traces, named, output, form),
+        depth="verdict" if quick else _depth(traces, spec, output, form),
     )
     outcomes, is_interrupted = judged_with_bar(judge, len(traces))
     return _told(outcomes, traces, output, form, is_interrupted=is_interrupted)
