@@ -15,12 +15,12 @@ from lcs.policies.steps import Steps
 
 FAMILIES: Final = 20
 """Trees of each action, which expect their mean together."""
-FED: Final = 10, 50
+FED: Final = 10, 30
 """Steps in a leaf, at least: a share of all, within these."""
 SHARE: Final = 1 / 400
 GENERATIONS: Final = 3
 """How often trees grow, each time for what those before expected."""
-LONGEST: Final = 32
+LONGEST: Final = 64
 """A choice is taken for what it brings while it is held, for so many decisions at most."""
 
 

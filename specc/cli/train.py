@@ -69,7 +69,7 @@ By: TypeAlias = Annotated[
 ]
 Episodes: TypeAlias = Annotated[
     int | None,
-    typer.Option("--episodes", "-n", min=1, help="To learn from, at most; default 1,400."),
+    typer.Option("--episodes", "-n", min=1, help="To live, races included; default 5,000."),
 ]
 HeldOut: TypeAlias = Annotated[
     int | None,

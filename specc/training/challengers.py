@@ -1,6 +1,5 @@
 """The lists that may be better than the best so far: what is learnt, and variations of the best."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -10,7 +9,7 @@ from lcs.arrays import Array
 from lcs.policies.decision_list import DecisionList
 from lcs.policies.learner import Found, found_policy
 from lcs.policies.shortened import shortened
-from lcs.policies.steps import Steps, joined
+from lcs.policies.steps import Steps
 from lcs.policies.variations import Variation
 from runtime.arbiter import Arbiter
 from runtime.scenario import Scenario
@@ -22,7 +21,7 @@ VARYING: Final = 3
 
 
 def challengers_of(
-    lived: Sequence[Steps],
+    lived: Steps,
     champion: DecisionList | None,
     scenario: Scenario,
     settings: Settings,
@@ -36,20 +35,20 @@ def challengers_of(
     if champion is None:
         return found.lists
     chance = np.random.default_rng([settings.seed, number, VARYING])
-    x, actions = joined(lived).x, len(trained_arbiter(scenario).choices)
-    variation = Variation(found.lists, x, actions, settings.rules, chance)
+    actions = len(trained_arbiter(scenario).choices)
+    variation = Variation(found.lists, lived.x, actions, settings.rules, chance)
     varied = (variation.of(champion) for _ in range(settings.varied))
-    return (*found.lists, *(found.counted(shortened(rules, x)) for rules in varied))
+    return (*found.lists, *(found.counted(shortened(rules, lived.x)) for rules in varied))
 
 
-def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, number: int) -> Found:
+def policy_of(lived: Steps, scenario: Scenario, settings: Settings, number: int) -> Found:
     """What is learnt from all steps so far, in the generation of that number.
 
     Rules have bounds of few digits, and decide on these steps as those that were learnt.
     """
-    arbiter, steps = trained_arbiter(scenario), joined(lived)
+    arbiter = trained_arbiter(scenario)
     found = found_policy(
-        steps,
+        lived,
         ranges_of(arbiter),
         len(arbiter.choices),
         discount=training_of(scenario).discount,
@@ -57,7 +56,7 @@ def policy_of(lived: Sequence[Steps], scenario: Scenario, settings: Settings, nu
         seed=settings.seed + number,
         most=settings.rules,
     )
-    return replace(found, lists=tuple(shortened(rules, steps.x) for rules in found.lists))
+    return replace(found, lists=tuple(shortened(rules, lived.x) for rules in found.lists))
 
 
 def ranges_of(arbiter: Arbiter) -> tuple[Array, Array]:

@@ -14,10 +14,11 @@ from lcs.policies.policy import Policy
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.machine import evaluate
+from specc.training.episode import Task
 from specc.training.living import Progress, live_through
-from specc.training.training import AtRandom, Trial, trial_of, trial_tasks
+from specc.training.training import AtRandom, Trial, trial_of
 from specc.training.workers import Workers
-from specc.training.worlds import For
+from specc.training.worlds import For, world
 from verifier.arbitration.shares import interval_of
 
 CONFIDENCE: Final = 0.95
@@ -81,9 +82,9 @@ def judged(
             so_far = len(done) * worlds
             tell(f"judging in worlds held out: {what}, {count} of {of}", so_far + count, total)
 
-        tasks = trial_tasks(policy, worlds, For.JUDGING, explore)
+        seeds = [world(For.JUDGING, i) for i in range(worlds)]
+        tasks = [Task(seed, policy, explore) for seed in seeds]
         episodes = live_through(workers, tasks, what, told)
-        seeds = [task.world for task in tasks]
         succeeded = [each.succeeded for each in episodes]
         low, high = interval(float(np.mean(succeeded)), worlds)
         failed = tuple(s for s, good in zip(seeds, succeeded, strict=True) if not good)

@@ -50,10 +50,10 @@ class Racer:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Race:
-    """Who won, and how many decisions were made in it by all."""
+    """Who won, and all episodes that were lived in it."""
 
     winner: Racer
-    decisions: int
+    episodes: tuple[Episode, ...]
 
 
 def raced(
@@ -82,11 +82,11 @@ def raced(
         for racer in running:
             racer.episodes += [next(episodes) for _ in range(upto - done)]
         done = upto
-    decisions = sum(len(each.steps) for racer in racers for each in racer.episodes)
+    every = tuple(each for racer in racers for each in racer.episodes)
     winner = max(running, key=lambda racer: racer.standing)
     if champion is not None and not winner.beats(racers[0]):
         winner = racers[0]
-    return Race(winner, decisions)
+    return Race(winner, every)
 
 
 def _fastest(running: Sequence[Racer], left: int) -> Iterator[Racer]:

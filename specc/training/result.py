@@ -8,6 +8,7 @@ from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.library import Library
 from compiler.findings import Findings
 from lcs.policies.decision_list import always
+from lcs.policies.steps import joined
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.scenario import Scenario
@@ -104,7 +105,8 @@ def concluded(
 def table_of(best: Generation, course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
     """All rules that lists of a generation were chosen from, learnt again: they are not kept."""
     number = course.generations.index(best)
-    return policy_of(course.lived[: best.episodes], scenario, begun.settings, number).tables[0]
+    lived = joined(course.lived[: best.episodes])
+    return policy_of(lived, scenario, begun.settings, number).tables[0]
 
 
 def text_of(scenario: Scenario, learner: str) -> Loaded:

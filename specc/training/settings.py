@@ -12,22 +12,22 @@ HELD_OUT: Final = 100
 class Settings:
     """How `specc train` goes about it.
 
-    learner: `alcsr` or `xcsr`. episodes: to learn from, at most. first: of these at random, before
-    anything is known. each: after so many more it is learnt anew. explore: the share of decisions
-    at which a try begins, once there is a policy. varied: lists like the best that race with it and
-    with what is learnt. tried_in: worlds of a race. patience: it stops early after so many races
-    that the same list won. rules: at most. again: at most this share of those that explore goes
-    back to where the best failed. seed: of all chance.
+    learner: `alcsr` or `xcsr`. episodes: to live; a generation that has begun by then is finished.
+    first: of these at random, before anything is known. each: to explore in each later generation.
+    explore: the share of decisions at which a try begins, once there is a policy. varied: lists
+    like the best that race with it and with what is learnt. tried_in: worlds of a race. patience:
+    it stops early after so many races that the same list won. rules: at most. again: at most this
+    share of those that explore goes back to where the best failed. seed: of all chance.
     """
 
     learner: str = "alcsr"
-    episodes: int = 1_400
+    episodes: int = 5_000
     first: int = 1_000
     each: int = 80
     explore: float = 0.06
     varied: int = 8
     tried_in: int = 64
-    patience: int = 4
+    patience: int = 8
     rules: int = 20
     again: float = 0.25
     seed: int = 0

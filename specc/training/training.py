@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from lcs.arrays import Integers
 from lcs.policies.decision_list import DecisionList
-from lcs.policies.policy import Policy
-from lcs.policies.steps import Steps
+from lcs.policies.steps import Steps, joined
 from runtime.scenario import Scenario
 from specc.training.challengers import challengers_of
 from specc.training.episode import Episode, Task
@@ -21,7 +20,6 @@ from specc.training.settings import Settings
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
-EXPLORING: Final = "exploring"
 AGAIN: Final = 2
 """What sets the chance of which failures are lived again apart from other chance."""
 
@@ -65,11 +63,11 @@ class Failure:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Generation:
-    """What was best after so many episodes and decisions, and how it did.
+    """What was best of all that was learnt from so many episodes and decisions, and how it did.
 
     explored: the last of these episodes. tried: the best list, in the worlds of its race. failed:
-    where it did. is_new: it is another than before. raced: decisions of all lists in the race.
-    took: no part of what follows from the seed.
+    where it did. is_new: it is another than before. raced: decisions of all lists in the race,
+    from which generations after this one learn. took: no part of what follows from the seed.
     """
 
     episodes: int
@@ -88,7 +86,7 @@ class Generation:
 class Course:
     """A training so far: everything that it goes on from.
 
-    lived: of each episode that explored, in their order.
+    lived: of each episode, those that explored in a generation before those of its race.
     """
 
     lived: list[Steps] = field(default_factory=list)
@@ -101,7 +99,7 @@ class Course:
 
     @property
     def episodes(self) -> int:
-        """How many were lived to learn from."""
+        """How many were lived."""
         return len(self.lived)
 
     def is_over(self, settings: Settings) -> bool:
@@ -150,28 +148,31 @@ def go_on(
 def _generation(
     course: Course, scenario: Scenario, settings: Settings, workers: Workers, tell: Progress
 ) -> Generation:
-    before, standing = course.episodes, _standing(course)
+    standing, most, done_so_far = _standing(course), settings.episodes, course.episodes
     tasks = exploring_tasks(course, settings)
-    after = before + len(tasks)
 
     def told(what: str, done: int, of: int) -> None:
-        lived = before + done if what == EXPLORING else after
-        tell(f"{what} {done} of {of}{standing}", lived, settings.episodes)
+        nonlocal done_so_far
+        done_so_far += done > 0
+        tell(f"{what} {done} of {of}{standing}", min(done_so_far, most), most)
 
     clock = [perf_counter()]
-    episodes = live_through(workers, tasks, EXPLORING, told)
+    episodes = live_through(workers, tasks, "exploring", told)
     clock.append(perf_counter())
-    tell(f"learning{standing}", after, settings.episodes)
+    tell(f"learning{standing}", min(done_so_far, most), most)
     lived = [*course.lived, *(episode.steps for episode in episodes)]
     champion = course.champion.rules if course.generations else None
-    challengers = challengers_of(lived, champion, scenario, settings, len(course.generations))
+    challengers = challengers_of(
+        joined(lived), champion, scenario, settings, len(course.generations)
+    )
     clock.append(perf_counter())
     worlds = choosing_worlds(len(course.generations), settings)
     race = raced(champion, challengers, worlds, workers, told)
     clock.append(perf_counter())
-    winner, course.lived = race.winner, lived
+    winner = race.winner
+    course.lived = [*lived, *(episode.steps for episode in race.episodes)]
     return Generation(
-        episodes=after,
+        episodes=len(lived),
         decisions=sum(len(steps) for steps in lived),
         explored=trial_of(episodes),
         tried=trial_of(winner.episodes),
@@ -182,7 +183,7 @@ def _generation(
         ),
         rules=winner.rules,
         is_new=not winner.is_champion,
-        raced=race.decisions,
+        raced=sum(len(each.steps) for each in race.episodes),
         took=Took(*np.diff(clock).tolist()),
     )
 
@@ -229,11 +230,6 @@ def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
         first_try = max(failure.decisions - 1 - int(chance.integers(BEFORE)), 0)
         tasks[place] = replace(tasks[place], world=failure.world, first_try=first_try)
     return tasks
-
-
-def trial_tasks(policy: Policy, worlds: int, purpose: For, explore: float = 0.0) -> list[Task]:
-    """Episodes of a policy in the worlds of a purpose, the same for all policies."""
-    return [Task(world(purpose, i), policy, explore) for i in range(worlds)]
 
 
 def trial_of(episodes: Sequence[Episode]) -> Trial:

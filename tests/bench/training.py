@@ -11,6 +11,7 @@ from pathlib import Path
 from time import process_time
 from typing import Final
 
+from lcs.policies.steps import joined
 from specc.loading import load_scenario
 from specc.training.challengers import policy_of
 from specc.training.episode import Task, lived
@@ -33,9 +34,9 @@ def main() -> None:
     paces = [paced(scenario, task) for task in tasks]
     steps = [lived(scenario, task).steps for task in tasks]
     decisions = sum(pace.decisions for pace in paces)
-    policy_of(steps[:1], scenario, Settings(), 0)  # to load kernels is no time of learning
+    policy_of(steps[0], scenario, Settings(), 0)  # to load kernels is no time of learning
     began = process_time()
-    policy_of(steps, scenario, Settings(), 0)
+    policy_of(joined(steps), scenario, Settings(), 0)
     learning = process_time() - began
     parts = {
         "the world alone": sum(pace.world for pace in paces),

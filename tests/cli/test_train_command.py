@@ -17,7 +17,7 @@ from specc.training.settings import Settings
 from tests.specc.training_scenes import FILES, SMALL, equal, written_in
 
 RESUME = ["train", "--resume", "-o", "out"]
-MORE = Settings(episodes=12, first=3, each=3, varied=1, tried_in=3, rules=3, patience=9)
+MORE = Settings(episodes=44, first=3, each=3, varied=1, tried_in=3, rules=3, patience=9)
 
 
 @pytest.fixture(autouse=True)
@@ -54,7 +54,7 @@ def test_what_was_learnt_is_left_told_and_written(capsys: pytest.CaptureFixture[
     assert "wrote choose.yaml, summary.txt, summary.json, curves.svg into out" in told.err
     assert (out / "curves.svg").read_text().startswith("<?xml")
     record = json.loads((out / "summary.json").read_text())
-    assert [each["episodes"] for each in record["generations"]] == [6, 12]
+    assert [each["episodes"] for each in record["generations"]] == [6, 20]
     assert sum(record["speed"][part] for part in ("world", "control", "rewards", "learning")) == (
         pytest.approx(1.0)
     )
@@ -116,7 +116,7 @@ def test_ctrl_c_says_how_it_goes_on(
 
     assert main(RESUME) == 130
     assert capsys.readouterr().err.endswith(
-        "interrupted after 0 of 12 episodes\n"
+        "interrupted after 0 of 20 episodes\n"
         "these are kept; go on with: specc train --resume -o out\n"
     )
 

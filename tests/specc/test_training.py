@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lcs.policies.decision_list import always
-from lcs.policies.steps import Steps
+from lcs.policies.steps import Steps, joined
 from runtime.run import run
 from runtime.scenario import Scenario
 from spec_schema.diagnostics import SpecError
@@ -35,7 +35,7 @@ from specc.training.training import (
 )
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
-from tests.specc.training_scenes import FILES, SMALL, equal, pen_in, trained, written_in
+from tests.specc.training_scenes import FILES, SMALL, equal, in_silence, pen_in, trained, written_in
 
 TRIAL = Trial(1.0, 0.5, 3.0, 7)
 FAILED = Failure(11, 40), Failure(12, 3)
@@ -54,10 +54,6 @@ def pen(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
 def whole(pen: Scenario) -> Course:
     """A training that nobody interrupted."""
     return trained(pen)
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 def generation(
@@ -80,8 +76,10 @@ def test_two_processes_learn_what_one_learns(pen: Scenario, whole: Course) -> No
 def test_a_training_that_goes_on_from_its_checkpoint_learns_the_same(
     pen: Scenario, whole: Course, tmp_path: Path
 ) -> None:
-    first = whole.generations[0]
-    keep(Course(whole.lived[: first.episodes], [first]), tmp_path / "first.npz")
+    first, last = whole.generations
+    after_first = whole.lived[: last.episodes - SMALL.each]
+    assert len(after_first) > first.episodes, "what raced is learnt from, too"
+    keep(Course(after_first, [first]), tmp_path / "first.npz")
 
     resumed = trained(pen, course=taken_up(tmp_path / "first.npz"))
 
@@ -136,7 +134,7 @@ def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course)
 
 def test_what_was_best_first_is_learnt_again_to_the_bit(pen: Scenario, whole: Course) -> None:
     first = whole.generations[0]
-    again = policy_of(whole.lived[: first.episodes], pen, SMALL, 0)
+    again = policy_of(joined(whole.lived[: first.episodes]), pen, SMALL, 0)
     assert any(equal(rules, first.rules) for rules in again.lists)
 
 

@@ -9,7 +9,7 @@ from lcs.policies.decision_list import DecisionList, always
 from runtime.scenario import Scenario
 from specc.training.race import LEFT, Racer, raced
 from specc.training.workers import Workers
-from tests.specc.training_scenes import pen_in
+from tests.specc.training_scenes import in_silence, pen_in
 from verifier.report.requirement_results import Outcome
 
 GO, TURN = 0, 1
@@ -20,10 +20,6 @@ WORLDS = range(8)
 def pen(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
     """The scenario, in files of its own."""
     return pen_in(tmp_path_factory.mktemp("pen"))
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 def careful(room: float) -> DecisionList:
@@ -70,4 +66,5 @@ def test_only_few_go_on_to_all_worlds_and_all_decisions_are_counted(pen: Scenari
         race = raced(None, lists, WORLDS, workers, lambda *of: told.append(of))
 
     assert [of for _, done, of in told if done == 0] == [10, 2 * LEFT[0], 5 * LEFT[1]]
-    assert race.decisions > sum(len(each.steps) for each in race.winner.episodes)
+    assert len(race.episodes) == 10 + 2 * LEFT[0] + 5 * LEFT[1]
+    assert all(each in race.episodes for each in race.winner.episodes)

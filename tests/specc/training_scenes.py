@@ -11,7 +11,7 @@ from specc.training.settings import Settings
 from specc.training.training import Course, go_on
 from specc.training.workers import Workers
 
-SMALL: Final = Settings(episodes=12, first=6, each=6, varied=2, tried_in=3, rules=3)
+SMALL: Final = Settings(episodes=20, first=6, each=6, varied=2, tried_in=3, rules=3)
 """Two generations."""
 
 FILES: Final = {
@@ -141,10 +141,14 @@ def trained(
     course = course or Course()
     with Workers(scenario, jobs) as workers:
         go_on(
-            *(course, scenario, SMALL, workers, lambda _what, _done, _of: None),
+            *(course, scenario, SMALL, workers, in_silence),
             keep=lambda: keep(course, kept) if kept is not None else None,
         )
     return course
+
+
+def in_silence(_what: str, _done: int, _of: int) -> None:
+    """Nobody watches."""
 
 
 def equal(one: DecisionList, other: DecisionList) -> bool:

@@ -9,14 +9,16 @@ import argparse
 import json
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
+
+import numpy as np
 
 from specc.cli import main as specc
 from specc.training.checkpoint import CHECKPOINT, taken_up
 from specc.training.folder import RECORD, TRAINING
-from tests.study.errand import SCENARIOS, WAYS, line_of, outcomes, summary
+from tests.study.errand import SCENARIOS, WAYS, Summary, line_of, outcomes, summary
 
 SPECS: Final = SCENARIOS.parent
 LEARNED: Final = "errand_learned.yaml"
@@ -38,22 +40,35 @@ def cost_of(folder: Path) -> str:
     """How many rules, and from how much they were learnt."""
     record = json.loads((folder / RECORD).read_text())
     course = taken_up(folder / CHECKPOINT)
-    raced = sum(each.raced for each in course.generations)
     last = course.generations[-1]
     rules = record["compaction"]["rules"]
-    return f"{rules} | {last.episodes:,} | {last.decisions:,} + {raced:,} |"
+    return f"{rules} | {course.episodes:,} | {last.decisions + last.raced:,} |"
+
+
+def mean_line(learner: str, every: Sequence[Summary]) -> str:
+    """The means over seeds, and the range of their shares."""
+    share = np.array([each.success for each in every])
+    time, touched, flat, late, charged = np.mean(
+        [(each.time, each.touched, each.flat, each.late, each.charged) for each in every], axis=0
+    )
+    return (
+        f"| {learner}, mean of {len(every)} | | {share.mean():.0%} (seeds {100 * share.min():.0f} "
+        f"to {share.max():.0%}) | {time:.0f} s | {touched:.0%} | {flat:.0%} | {late:.0%} "
+        f"| {charged:.0%} | | | |"
+    )
 
 
 def lines(out: Path, learners: list[str], seeds: int, jobs: int) -> Iterator[str]:
     """The table, line by line."""
     titles = "decides", "reached", "share (95 %)", "time", "touched", "flat", "late", "charged"
-    costs = "rules", "episodes", "decisions explored + raced"
+    costs = "rules", "episodes", "decisions"
     yield f"| {' | '.join((*titles, *costs))} |"
     yield "|---" * len((*titles, *costs)) + "|"
     for way in WAYS:
         found = outcomes(SCENARIOS / f"errand_{way}.yaml", HELD_OUT, jobs)
         yield f"{line_of(way, summary(found))} | | |"
     for learner in learners:
+        every: list[Summary] = []
         for seed in range(seeds):
             folder = out / f"{learner}_{seed}"
             trained(folder, learner, seed, jobs)
@@ -62,7 +77,9 @@ def lines(out: Path, learners: list[str], seeds: int, jobs: int) -> Iterator[str
                 shutil.copytree(SPECS, copy, ignore=shutil.ignore_patterns("recordings"))
                 shutil.copy(folder / LEARNED, copy / "arbiters" / LEARNED)
                 found = outcomes(copy / "scenarios" / LEARNED, HELD_OUT, jobs)
-            yield f"{line_of(f'{learner}, seed {seed}', summary(found))} {cost_of(folder)}"
+            every.append(summary(found))
+            yield f"{line_of(f'{learner}, seed {seed}', every[-1])} {cost_of(folder)}"
+        yield mean_line(learner, every)
 
 
 def main() -> None:
