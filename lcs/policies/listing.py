@@ -14,7 +14,7 @@ from lcs.arrays import Array, Booleans, Integers
 from lcs.policies.decision_list import DecisionList, holds, uncounted
 from lcs.policies.simplifying import simplified
 
-WORTH_A_RULE: Final = 0.0015
+WORTH_A_RULE: Final = 0.0008
 """A rule saves at least this share of what is lost without any."""
 
 

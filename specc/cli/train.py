@@ -69,7 +69,7 @@ By: TypeAlias = Annotated[
 ]
 Episodes: TypeAlias = Annotated[
     int | None,
-    typer.Option("--episodes", "-n", min=1, help="To live, races included; default 5,000."),
+    typer.Option("--episodes", "-n", min=1, help="To live, races included; default 3,600."),
 ]
 HeldOut: TypeAlias = Annotated[
     int | None,

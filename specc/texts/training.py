@@ -9,6 +9,7 @@ from specc.training.episode import training_of
 from specc.training.judging import CONFIDENCE, Judged
 from specc.training.result import Trained
 from specc.training.speed import Shares, shares_of
+from specc.training.training import LAST
 from verifier.report.layout import INDENT, bullets, section, table, wrapped
 from verifier.report.wording import number
 
@@ -64,8 +65,8 @@ def _head(trained: Trained) -> str:
     lines = [f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"]
     lines.append(
         wrapped(
-            f"from {lived}; the best in {counted(2 * settings.tried_in, 'world')} of all that won "
-            f"a race in {counted(count, 'generation')}{_ending(trained)}"
+            f"from {lived}; in {counted(LAST * settings.tried_in, 'world')} more the best of "
+            f"what {counted(count, 'generation')} brought{_ending(trained)}"
         )
     )
     return "\n".join(lines)

@@ -50,9 +50,10 @@ class Racer:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Race:
-    """Who won, and all episodes that were lived in it."""
+    """Who won, the best of the challengers, and all episodes that were lived in it."""
 
     winner: Racer
+    challenger: Racer
     episodes: tuple[Episode, ...]
 
 
@@ -83,10 +84,10 @@ def raced(
             racer.episodes += [next(episodes) for _ in range(upto - done)]
         done = upto
     every = tuple(each for racer in racers for each in racer.episodes)
-    winner = max(running, key=lambda racer: racer.standing)
-    if champion is not None and not winner.beats(racers[0]):
-        winner = racers[0]
-    return Race(winner, every)
+    challenging = [racer for racer in running if not racer.is_champion]
+    best = max(challenging, key=lambda racer: racer.standing)
+    is_beaten = champion is None or best.beats(racers[0])
+    return Race(best if is_beaten else racers[0], best, every)
 
 
 def _fastest(running: Sequence[Racer], left: int) -> Iterator[Racer]:

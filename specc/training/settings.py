@@ -21,7 +21,7 @@ class Settings:
     """
 
     learner: str = "alcsr"
-    episodes: int = 5_000
+    episodes: int = 3_600
     first: int = 1_000
     each: int = 80
     explore: float = 0.06

@@ -23,6 +23,8 @@ from specc.training.worlds import For, world
 AGAIN: Final = 2
 """What sets the chance of which failures are lived again apart from other chance."""
 
+LAST: Final = 3
+"""The last race has the worlds of so many."""
 BEFORE: Final = 30
 """Decisions before a failure, at most, at which something else is tried."""
 
@@ -63,11 +65,12 @@ class Failure:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Generation:
-    """What was best of all that was learnt from so many episodes and decisions, and how it did.
+    """What was learnt from so many episodes and decisions, and what is best since its race.
 
-    explored: the last of these episodes. tried: the best list, in the worlds of its race. failed:
-    where it did. is_new: it is another than before. raced: decisions of all lists in the race,
-    from which generations after this one learn. took: no part of what follows from the seed.
+    explored: the last of these episodes. rules: the best of the lists that challenged the best so
+    far. is_new: it won. tried: who won, in the worlds of the race. failed: where that did. raced:
+    decisions of all lists in it, from which later generations learn. took: no part of what follows
+    from the seed.
     """
 
     episodes: int
@@ -94,7 +97,7 @@ class Course:
 
     @property
     def champion(self) -> Generation:
-        """The generation that found the list which won the last race."""
+        """The generation whose list won last."""
         return next(each for each in reversed(self.generations) if each.is_new)
 
     @property
@@ -181,7 +184,7 @@ def _generation(
             for seed, each in zip(worlds, winner.episodes, strict=True)
             if not each.succeeded
         ),
-        rules=winner.rules,
+        rules=race.challenger.rules,
         is_new=not winner.is_champion,
         raced=sum(len(each.steps) for each in race.episodes),
         took=Took(*np.diff(clock).tolist()),
@@ -191,15 +194,15 @@ def _generation(
 def best_of(
     course: Course, settings: Settings, workers: Workers, tell: Progress
 ) -> tuple[Generation, Trial]:
-    """The generation whose list is best of all that won a race, and how it did in the last race.
+    """The generation whose list is the best of all, and how it did in the last race.
 
-    That one is twice as long as those before, in worlds of its own.
+    That one is longer than those before, in worlds of its own, and who did not beat the best of
+    its time for sure runs again: it may well be better.
     """
-    won = [each for each in course.generations if each.is_new]
-    after = len(course.generations)
-    worlds = choosing_worlds(after, settings) + choosing_worlds(after + 1, settings)
-    winner = raced(None, [each.rules for each in won], worlds, workers, tell).winner
-    return next(each for each in won if each.rules is winner.rules), trial_of(winner.episodes)
+    every, after = course.generations, len(course.generations)
+    worlds = [each for i in range(LAST) for each in choosing_worlds(after + i, settings)]
+    winner = raced(None, [each.rules for each in every], worlds, workers, tell).winner
+    return next(each for each in every if each.rules is winner.rules), trial_of(winner.episodes)
 
 
 def choosing_worlds(number: int, settings: Settings) -> list[int]:
@@ -222,10 +225,10 @@ def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
     new = [world(For.LEARNING, before + i, settings.seed) for i in range(count)]
     if is_first:
         return [Task(each, AtRandom(), 1.0, before + i) for i, each in enumerate(new)]
-    last = course.generations[-1]
+    last, best = course.generations[-1], course.champion.rules
     chance = np.random.default_rng([settings.seed, len(course.generations), AGAIN])
     back = chance.permutation(len(last.failed))[: int(settings.again * count)]
-    tasks = [Task(each, last.rules, settings.explore, before + i) for i, each in enumerate(new)]
+    tasks = [Task(each, best, settings.explore, before + i) for i, each in enumerate(new)]
     for place, failure in enumerate(last.failed[i] for i in back):
         first_try = max(failure.decisions - 1 - int(chance.integers(BEFORE)), 0)
         tasks[place] = replace(tasks[place], world=failure.world, first_try=first_try)
