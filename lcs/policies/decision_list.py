@@ -61,6 +61,17 @@ class DecisionList:
         """All but one of its rules."""
         return self.in_order(np.delete(np.arange(len(self)), rule))
 
+    def with_rule(self, place: int, action: int, lower: Array, upper: Array) -> "DecisionList":
+        """The list with one rule more, before the one at this place; its bounds (n,)."""
+        return replace(
+            self,
+            action=np.insert(self.action, place, action),
+            lower=np.insert(self.lower, place, lower, axis=0),
+            upper=np.insert(self.upper, place, upper, axis=0),
+            right=np.insert(self.right, place, 0),
+            wrong=np.insert(self.wrong, place, 0),
+        )
+
     def with_bound(self, rule: int, i: int, side: str, value: float) -> "DecisionList":
         """The list with another `lower` or `upper` bound of a rule in input i."""
         bounds = getattr(self, side).copy()

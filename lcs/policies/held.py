@@ -45,6 +45,5 @@ def held(lived: Steps, discount: float, longest: int) -> Held:
 def _goes_on(lived: Steps) -> Booleans:
     """Whether the next decision is of the same episode, and chooses the same (D,)."""
     same = np.zeros(len(lived), np.bool_)
-    follows = (lived.after[:-1] == lived.x[1:]).all(axis=1)
-    same[:-1] = follows & ~lived.ends[:-1] & (lived.action[1:] == lived.action[:-1])
+    same[:-1] = ~lived.last[:-1] & (lived.action[1:] == lived.action[:-1])
     return same

@@ -74,8 +74,8 @@ class Found:
     lists: of each draw one for each action, which takes it where no rule holds. Which is best is
     not told by what single decisions lose: an action that is nearly as good as the best, once, may
     lead to nothing if it is always taken. It takes a trial.
-    tables: all rules, of each draw. x: all lived places (D, n). good (D, A): whether an action is
-    as good as the best there.
+    tables: all rules, of each draw. x: all lived places (D, n), within their ranges. good (D, A):
+    whether an action is as good as the best there.
     """
 
     lists: tuple[DecisionList, ...]

@@ -1,8 +1,9 @@
 """From many boxes and what each action costs to a short decision list.
 
-The next rule is always the one that saves most where no rule holds yet: separate and conquer
-(Fuernkranz 1999), by cost and not by count, so that a place where all actions are nearly equal asks
-for no rule. Then rules and conditions go that save next to nothing.
+The next rule is always the one that saves most, wherever in the list it saves that: separate and
+conquer (Fuernkranz 1999), by cost and not by count, so that a place where all actions are nearly
+equal asks for no rule. A rule for many places is found first; one for few of these, before which
+that would hold, then goes ahead of it. Then rules and conditions go that save next to nothing.
 """
 
 from dataclasses import dataclass, replace
@@ -11,10 +12,11 @@ from typing import Final, final
 import numpy as np
 
 from lcs.arrays import Array, Booleans, Integers
-from lcs.policies.decision_list import DecisionList, holds, uncounted
+from lcs.policies.decision_list import DecisionList, always, holds
 from lcs.policies.simplifying import simplified
+from lcs.policies.weighed import weighed
 
-WORTH_A_RULE: Final = 0.0008
+WORTH_A_RULE: Final = 0.0015
 """A rule saves at least this share of what is lost without any."""
 
 
@@ -38,27 +40,17 @@ def listed(offer: Offer, x: Array, cost: Array, otherwise: int, *, most: int) ->
         otherwise: the action where no rule holds.
         most: rules.
     """
-    held = holds(offer.lower, offer.upper, x)
-    saves = cost[:, [otherwise]] - cost  # (T, A), each action in the place of `otherwise`
-    least = WORTH_A_RULE * float(cost[:, otherwise].sum())
-    chosen: list[int] = []
-    saved = _saved(offer.action, held, saves)
-    while len(saved) and len(chosen) < most:
-        best = int(saved.argmax())
-        if saved[best] <= least:
+    held = holds(offer.lower, offer.upper, x).astype(np.float64)
+    now = weighed(always(otherwise, x.shape[1]), x, np.ascontiguousarray(cost.T))
+    least = WORTH_A_RULE * float(now.lost.sum())
+    while len(offer.action) and len(now.rules) < most:
+        saved = now.saved(offer.action, held)
+        place, box = divmod(int(saved.argmax()), len(offer.action))
+        if saved[place, box] <= least:
             break
-        chosen.append(best)
-        now = held[best].copy()
-        saved -= _saved(offer.action, held[:, now], saves[now])
-        held[:, now] = False
-    rules = uncounted(offer.action[chosen], offer.lower[chosen], offer.upper[chosen], otherwise)
-    return simplified(rules, x, cost, least)
-
-
-def _saved(action: Integers, held: Booleans, saves: Array) -> Array:
-    """What each of C boxes saves by its action where it holds (C, T), as (C,)."""
-    inside: Array = held.astype(np.float64) @ saves
-    return inside[np.arange(len(action)), action]
+        bounds = offer.lower[box], offer.upper[box]
+        now = now.instead(now.rules.with_rule(place, int(offer.action[box]), *bounds))
+    return simplified(now, least)
 
 
 def counted(rules: DecisionList, x: Array, good: Booleans) -> DecisionList:

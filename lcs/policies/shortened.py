@@ -1,6 +1,8 @@
 """Lists whose bounds have few digits, and that decide as before wherever anything was lived."""
 
 import dataclasses
+import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -9,9 +11,8 @@ from lcs.arrays import Array
 from lcs.policies.decision_list import DecisionList, holds
 from lcs.rules.digits import shortest_between
 
-DECIMALS: Final = 9
-"""Places that differ beyond these are the same: 2.9999999999 m and 3 m differ by rounding."""
-BESIDE: Final = 10.0**-DECIMALS
+DIGITS: Final = 9
+"""Of an input's range: places that differ beyond these are the same, by rounding."""
 MARGIN: Final = 0.05
 """Of a gap between two lived places, on either side of a bound in it."""
 
@@ -24,36 +25,50 @@ def shortened(rules: DecisionList, x: Array) -> DecisionList:
     several to the one in the middle, so 0.5 where all places are 0 or 1. Without such a place
     beyond it, it is dropped.
     """
-    lower, upper, left = (np.round(each, DECIMALS) for each in (rules.lower, rules.upper, x))
+    decimals = [_decimals(column) for column in x.T]
+    lower, upper, left = (_rounded(each, decimals) for each in (rules.lower, rules.upper, x))
     made = dataclasses.replace(rules, lower=lower, upper=upper)
     for r in range(len(made)):
         own = slice(r, r + 1)
         for i in range(x.shape[1]):
             others = np.arange(x.shape[1]) != i
             within = holds(made.lower[own, others], made.upper[own, others], left[:, others])[0]
-            values = left[within, i]
-            made.lower[r, i] = _lower(made.lower[r, i], values[values < made.upper[r, i]])
-            made.upper[r, i] = _upper(made.upper[r, i], values[values >= made.lower[r, i]])
+            values, beside = left[within, i], 10.0 ** -decimals[i]
+            made.lower[r, i] = _lower(made.lower[r, i], values[values < made.upper[r, i]], beside)
+            made.upper[r, i] = _upper(made.upper[r, i], values[values >= made.lower[r, i]], beside)
         left = left[~holds(made.lower[own], made.upper[own], left)[0]]
     return made
 
 
-def _lower(bound: float, values: Array) -> float:
+def _decimals(values: Array) -> int:
+    """Decimals that tell `DIGITS` digits of the range of an input."""
+    span = float(np.ptp(values)) if len(values) else 0.0
+    return DIGITS - (math.ceil(math.log10(span)) if span > 0.0 else 0)
+
+
+def _rounded(columns: Array, decimals: Sequence[int]) -> Array:
+    """Columns (T, n), each rounded to its decimals."""
+    pairs = zip(columns.T, decimals, strict=True)
+    rounded: Array = np.column_stack([np.round(each, places) for each, places in pairs])
+    return rounded
+
+
+def _lower(bound: float, values: Array, beside: float) -> float:
     """A bound that lets in the same of the values, each x with bound <= x."""
     out, let_in = values[values < bound], values[values >= bound]
-    return _between(out, let_in, bound) if len(out) else -np.inf
+    return _between(out, let_in, bound, beside) if len(out) else -np.inf
 
 
-def _upper(bound: float, values: Array) -> float:
+def _upper(bound: float, values: Array, beside: float) -> float:
     """A bound that lets in the same of the values, each x with x < bound."""
     let_in, out = values[values < bound], values[values >= bound]
-    return _between(let_in, out, bound) if len(out) else np.inf
+    return _between(let_in, out, bound, beside) if len(out) else np.inf
 
 
-def _between(below: Array, above: Array, bound: float) -> float:
+def _between(below: Array, above: Array, bound: float, beside: float) -> float:
     """A number of few digits that parts the values as the bound does, and is next to neither."""
     if not len(below) or not len(above):  # further from all, since one may have been rounded to it
-        return bound + (BESIDE if len(below) else -BESIDE)
+        return bound + (beside if len(below) else -beside)
     low, high = float(below.max()), float(above.min())
     margin = MARGIN * (high - low)
     short = shortest_between(low + margin, high - margin, 0.5 * (low + high))

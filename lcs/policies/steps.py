@@ -12,16 +12,18 @@ from lcs.arrays import Array, Booleans, Integers
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Steps:
-    """D decisions of one episode.
+    """D decisions of one episode or of several, one after the other.
 
     x, after (D, n): where it was decided, and where that led. action (D,). reward (D,).
-    ends (D,): whether the episode ended with it, so that nothing comes after.
+    last (D,): whether it was the last of its episode. ends (D,): whether it ended it, so that
+    nothing comes after; an episode whose time is up might have gone on.
     """
 
     x: Array
     action: Integers
     reward: Array
     after: Array
+    last: Booleans
     ends: Booleans
 
     def __len__(self) -> int:

@@ -6,12 +6,12 @@ A trial knows neither limit, so near the best list so far trials are the judge.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final, TypeAlias, final
+from typing import Final, TypeAlias, final
 
 import numpy as np
 
 from lcs.arrays import Array
-from lcs.policies.decision_list import OF_EACH, DecisionList
+from lcs.policies.decision_list import DecisionList
 
 TWICE: Final = 0.5
 """How often a list is changed a second time."""
@@ -96,12 +96,8 @@ class Variation:
             return rules
         other = given[self._one_of(len(given))]
         rule, place = self._one_of(len(other)), self._one_of(len(rules) + 1)
-
-        columns: dict[str, Any] = {
-            name: np.insert(getattr(rules, name), place, getattr(other, name)[rule], axis=0)
-            for name in OF_EACH
-        }
-        return replace(rules, **columns)
+        bounds = other.lower[rule], other.upper[rule]
+        return rules.with_rule(place, int(other.action[rule]), *bounds)
 
     def _some_bound(self, rules: DecisionList) -> tuple[str, tuple[int, int] | None]:
         """A side, and a rule and an input with a bound there; None where there is no bound."""

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from lcs.arrays import Array
+from lcs.faults import LearnerError
 from lcs.given import inputs_of
 from lcs.policies.held import held
 from lcs.policies.kernels.fitting import Lived, Numbers, fitted
@@ -32,6 +33,9 @@ def worth_of(lived: Steps, actions: int, discount: float, seed: int) -> Array:
     Raises:
         LearnerError: something is not finite.
     """
+    if not np.isfinite(lived.reward).all():
+        row = int(np.flatnonzero(~np.isfinite(lived.reward))[0])
+        raise LearnerError(f"the reward of decision {row} is not finite: {lived.reward[row]}")
     n, longer = lived.x.shape[1], held(lived, discount, LONGEST)
     x, after = inputs_of(lived.x, n), inputs_of(longer.after, n)
     steps = Lived(x, lived.action, longer.reward, after, longer.ends, longer.discount)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from lcs.policies.decision_list import DecisionList, always, holds, uncounted
 from lcs.policies.listing import Offer, counted, listed
 from lcs.policies.simplifying import simplified
+from lcs.policies.weighed import weighed
 
 INF = np.inf
 
@@ -90,7 +91,8 @@ def test_conditions_and_digits_that_decide_nothing_go() -> None:
     best = (x[:, 0] < 0.3).astype(int)
     cost = 1.0 - np.eye(2)[best]
     lower, upper = np.array([[-INF, 0.0012]]), np.array([[0.30001234, 0.99987]])
-    short = simplified(uncounted(np.array([1]), lower, upper, 0), x, cost, 0.01 * cost[:, 0].sum())
+    before = weighed(uncounted(np.array([1]), lower, upper, 0), x, cost.T)
+    short = simplified(before, 0.01 * cost[:, 0].sum())
     assert short.lower.tolist() == [[-INF, -INF]]
     assert short.upper.tolist() == [[0.3, INF]]
 

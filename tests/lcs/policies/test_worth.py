@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lcs.faults import LearnerError
 from lcs.policies.held import held
 from lcs.policies.learner import DRAWS, LEARNERS, Voting, found_policy
 from lcs.policies.steps import Steps, joined
@@ -21,7 +22,8 @@ def corridor(count: int, seed: int) -> Steps:
     idle = chance.random((count, 2))
     x = np.column_stack([cell, idle[:, 0]]) + 0.0
     led_to = np.column_stack([np.minimum(after, CELLS - 1), idle[:, 1]]) + 0.0
-    return Steps(x, action, ends.astype(float), led_to, ends)
+    alone = np.ones(count, np.bool_)
+    return Steps(x, action, ends.astype(float), led_to, alone, ends)
 
 
 def test_a_reward_is_worth_less_by_the_discount_for_each_step_that_it_is_away() -> None:
@@ -45,7 +47,8 @@ def test_where_episodes_end_at_once_an_action_is_worth_its_mean_reward() -> None
     chance = np.random.default_rng(3)
     x, action = np.zeros((500, 1)), chance.integers(0, 2, 500)
     reward = chance.normal(action, 1.0)
-    worth = worth_of(Steps(x, action, reward, x, np.ones(500, np.bool_)), 2, DISCOUNT, 0)
+    alone = np.ones(500, np.bool_)
+    worth = worth_of(Steps(x, action, reward, x, alone, alone), 2, DISCOUNT, 0)
     means = [reward[action == a].mean() for a in (0, 1)]
     assert worth[0] == pytest.approx(means)
 
@@ -75,8 +78,23 @@ def test_a_held_choice_is_worth_all_that_it_brings_and_what_comes_after() -> Non
     action, reward = np.array([1, 1, 1, 0, 0, 0]), np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
     ends = np.array([False, False, False, False, True, False])
     after = np.append(x[1:], [[9.0]], axis=0)
-    longer = held(Steps(x, action, reward, after, ends), 0.5, 2)
+    longer = held(Steps(x, action, reward, after, ends, ends), 0.5, 2)
     assert longer.reward.tolist() == [2.0, 4.0, 4.0, 16.0, 16.0, 32.0]
     assert longer.after[:, 0].tolist() == [2.0, 3.0, 3.0, 5.0, 5.0, 9.0]
     assert longer.discount.tolist() == [0.25, 0.25, 0.5, 0.25, 0.5, 0.5]
     assert longer.ends.tolist() == [False, False, False, True, True, False]
+
+
+def test_a_choice_is_held_no_longer_than_its_episode() -> None:
+    here = np.zeros((3, 1))
+    one = Steps(here, np.zeros(3, np.int64), np.ones(3), here, np.arange(3) == 2, here[:, 0] > 0)
+    longer = held(joined([one, one]), 1.0, 9)
+    assert longer.reward.tolist() == [3.0, 2.0, 1.0, 3.0, 2.0, 1.0]
+
+
+@pytest.mark.parametrize("what", ["x", "reward", "after"])
+def test_what_is_not_finite_is_refused(what: str) -> None:
+    lived = corridor(20, 7)
+    getattr(lived, what).flat[3] = np.inf
+    with pytest.raises(LearnerError):
+        worth_of(lived, 2, DISCOUNT, 0)
