@@ -24,7 +24,7 @@ from compiler.world.quantities_of_run import quantities_of
 from compiler.world.shapes import pose_of, positive
 from compiler.world.size import check_heights_with, is_small_enough
 from compiler.world.starts import beginnings_of
-from compiler.world.training import lower_training, read_reward
+from compiler.world.training import Span, lower_training, read_reward
 from compiler.world.windows import check_window
 from compiler.world.world import lower_world
 from runtime.requirement import Requirement
@@ -82,7 +82,7 @@ def compile_parts_of_scenario(
         check_heights_with(world, robots.found, findings)
     known = quantities_of(world, robots.found) if world is not None and robots.is_whole else None
     requirements = _requirements(spec, known, duration, findings)
-    training = _training(spec, known, robots.found, duration, findings)
+    training = _training(spec, known, robots.found, Span(duration, float(step)), findings)
     if world is None or not robots.is_whole or findings.has_errors:
         return None
     scenario = Scenario(
@@ -192,7 +192,7 @@ def _training(
     spec: ScenarioSpec,
     known: Mapping[str, Measured] | None,
     robots: Sequence[Robot],
-    duration: float,
+    span: Span,
     findings: Findings,
 ) -> Training | None:
     if spec.train is None:
@@ -200,4 +200,4 @@ def _training(
     if known is None:
         read_reward(spec.train, findings)  # the rest is of what a run has
         return None
-    return lower_training(spec.train, robots, known, duration, findings)
+    return lower_training(spec.train, robots, known, span, findings)

@@ -1,6 +1,8 @@
 """The training of an arbiter in SI: whose it is, what is measured, and what that is worth."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import final
 
 from compiler.findings import Findings
 from compiler.lower_parts import code_of
@@ -9,6 +11,7 @@ from compiler.requirement import Measured, lower_requirement, read_quantity
 from compiler.world.measured import check_measured
 from compiler.world.windows import check_window
 from runtime.arbiter import Arbiter
+from runtime.architecture import Node
 from runtime.code import Code
 from runtime.requirement import Formula, Operator
 from runtime.scenario import Robot
@@ -23,25 +26,36 @@ from spec_schema.training import HOW, MeasureSpec, TrainingSpec
 
 BASE: Path = ("train",)
 NOTHING = Code("0.0")
+FEWEST_STEPS = 1.5
+"""Of the world in a period of what is trained: more than one, whatever was rounded."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Span:
+    """How long a run goes on, and how long each step of the world is; seconds."""
+
+    duration: float
+    step: float
 
 
 def lower_training(
     spec: TrainingSpec,
     robots: Sequence[Robot],
     known: Mapping[str, Measured],
-    duration: float,
+    span: Span,
     findings: Findings,
 ) -> Training:
     """The training of a scenario, with a finding for each mistake.
 
-    known: the quantities of the run. duration: seconds.
+    known: the quantities of the run.
     """
-    robot, node = _trained(spec.arbiter, robots, findings)
+    robot, node = _trained(spec.arbiter, robots, span.step, findings)
     reward = read_reward(spec, findings)
     quantities: dict[str, None] = {}
     measures = []
     for name, one in spec.measures.items():
-        measure, read = _measure(name, one, known, duration, findings)
+        measure, read = _measure(name, one, known, span.duration, findings)
         measures.append(measure)
         quantities |= dict.fromkeys(sorted(read))
     ends_when, read = _end(spec.ends_when, known, findings)
@@ -96,18 +110,20 @@ def _check_read(read: frozenset[str], spec: TrainingSpec, findings: Findings) ->
             findings.warning("S223", at, message, "use it in `reward`, or remove it", key=True)
 
 
-def _trained(text: str, robots: Sequence[Robot], findings: Findings) -> tuple[str, str]:
-    """The robot and the node whose arbiter is trained."""
+def _trained(
+    text: str, robots: Sequence[Robot], step: float, findings: Findings
+) -> tuple[str, str]:
+    """The robot and the node whose arbiter is trained; step: of the world, seconds."""
     path = (*BASE, "arbiter")
-    arbiters = {f"{robot}.{node}": arbiter for robot, node, arbiter in _nodes(robots) if arbiter}
+    nodes = [(f"{robot}.{node.name}", node, arbiter) for robot, node, arbiter in _nodes(robots)]
+    arbiters = {name: (node, arbiter) for name, node, arbiter in nodes if arbiter is not None}
     if text not in arbiters:
-        others = {f"{robot}.{node}" for robot, node, _ in _nodes(robots)}
-        is_other = text in others
+        is_other = text in {name for name, _, _ in nodes}
         message = f"'{text}' is no arbiter" if is_other else f"no arbiter is named '{text}'"
         meant = "" if is_other else did_you_mean(text, sorted(arbiters))
         findings.error("S392", path, message, meant or there_are(sorted(arbiters)))
         return text, ""
-    arbiter = arbiters[text]
+    trained, arbiter = arbiters[text]
     if not arbiter.learner:
         message = f"'{text}' decides by {arbiter.way}, and what is trained decides by alcsr or xcsr"
         remedy = f"write `by: {{alcsr: {{}}}}` in {arbiter.source.file}"
@@ -115,17 +131,24 @@ def _trained(text: str, robots: Sequence[Robot], findings: Findings) -> tuple[st
     elif not arbiter.reads:
         message = f"'{text}' reads nothing, so there is nothing that rules could be about"
         findings.error("S392", path, message, "declare under `reads` what it decides by")
+    elif trained.period < FEWEST_STEPS * step:
+        every = f"{1000.0 * trained.period:g} ms"
+        message = (
+            f"'{text}' decides every {every}, and so does the world step: nothing is seen between"
+            " two decisions"
+        )
+        findings.error("S392", path, message, "let it decide less often, or take a shorter `step`")
     robot, _, node = text.partition(".")
     return robot, node
 
 
-def _nodes(robots: Sequence[Robot]) -> Iterator[tuple[str, str, Arbiter | None]]:
+def _nodes(robots: Sequence[Robot]) -> Iterator[tuple[str, Node, Arbiter | None]]:
     """Robot, node and arbiter, of all nodes."""
     for robot in robots:
         for node in robot.architecture.nodes:
             is_arbiter = node.arbiter >= 0
             arbiter = robot.architecture.arbiters[node.arbiter] if is_arbiter else None
-            yield robot.name, node.name, arbiter
+            yield robot.name, node, arbiter
 
 
 def _measure(

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeAlias, final
+from typing import TYPE_CHECKING, Annotated, Final, TypeAlias, final
 
 import typer
 
@@ -17,9 +17,13 @@ from specc.figures.style_names import Style
 if TYPE_CHECKING:
     from runtime.scenario import Scenario
     from spec_schema.load import Loaded
+    from specc.training.course import Course
     from specc.training.folder import Begun
     from specc.training.result import Trained
-    from specc.training.training import Course
+
+
+WITHOUT_CODE: Final = "train it in a scenario without Python of your own: none is run here"
+"""What helps where a scenario needs Python of the user's."""
 
 
 @final
@@ -120,7 +124,7 @@ def train(
     The scenario says under `train` which arbiter learns, and what its decisions are rewarded for.
     Episodes run in worlds at random. After some, all that was lived is learnt from anew. What comes
     out races with the best list so far, and with lists like that, in worlds that none of them has
-    seen. The last winner is judged in worlds held out.
+    seen. The best of all generations is judged in worlds held out.
 
     The result is the arbiter's own YAML with a short list of rules in it: in FOLDER, and with
     --write in its place. All else in the file stays.
@@ -209,33 +213,41 @@ def _learner(scenario: "Scenario") -> str:
 
 
 def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) -> Status:
-    from specc.scenarios.failures import ALLOW, told_failures
+    from specc.scenarios.failures import told_failures
     from specc.training.folder import course_in, keep_in
     from specc.training.result import concluded
     from specc.training.training import go_on
+    from specc.training.unlearnable import told_unlearnable
     from specc.training.workers import Workers
 
     course = course_in(given.folder)
     warmed_policies(begun.settings.learner)
+
+    def keep(now: "Course") -> None:
+        nonlocal course
+        keep_in(given.folder, now)
+        course = now
+
     try:
-        with told_failures(scenario, ALLOW), Workers(scenario, given.jobs) as workers:
+        with (
+            told_failures(scenario, WITHOUT_CODE),
+            told_unlearnable(scenario),
+            Workers(scenario, given.jobs) as workers,
+        ):
             with progress_bar(scenario.name) as bar:
-                go_on(
-                    *(course, scenario, begun.settings, workers, bar),
-                    keep=lambda: keep_in(given.folder, course),
-                )
+                course = go_on(course, scenario, begun.settings, workers, bar, keep)
             with progress_bar(scenario.name) as bar:
                 trained = concluded(begun, scenario, text, course, workers, bar)
     except KeyboardInterrupt:
         return _stopped(begun, course, given.folder)
-    _write(trained, given)
     _tell(trained, given.form)
+    _write(trained, given)
     return Status.YES
 
 
-def _stopped(begun: "Begun", course: "Course", folder: Path | None) -> Status:
-    """Say how far it came, and how it goes on."""
-    say(f"interrupted after {course.episodes:,} of {begun.settings.episodes:,} episodes", "bold")
+def _stopped(begun: "Begun", kept: "Course", folder: Path | None) -> Status:
+    """Say how far it came with whole generations, and how it goes on."""
+    say(f"interrupted after {kept.episodes:,} of {begun.settings.episodes:,} episodes", "bold")
     if folder is None:
         say("nothing was kept, since no folder was named: -o FOLDER")
     else:

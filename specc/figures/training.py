@@ -27,7 +27,8 @@ class Improving:
 
     episodes: after how many. explored, tried: rewards of an episode, on average.
     explored_success, tried_success: shares; low, high: the interval of the latter. best: which
-    generation was kept. worlds: how many each policy was tried in.
+    generation was kept. final: its reward and success in the last race. worlds: how many each
+    policy was tried in.
     """
 
     episodes: Integers
@@ -38,6 +39,7 @@ class Improving:
     low: Array
     high: Array
     best: int
+    final: tuple[float, float]
     worlds: int
 
 
@@ -54,11 +56,12 @@ def draw_training(
         successes.set_ylabel("success")
         successes.set_ylim(-0.03, 1.03)
         successes.yaxis.set_major_formatter(FuncFormatter(percent_tick))
-        _draw(rewards, one, one.explored, one.tried, palette)
+        _draw(rewards, one, (one.explored, one.tried), one.final[0], palette)
         successes.vlines(
             one.episodes, one.low, one.high, color=_tried(palette)["color"], alpha=0.35, lw=2.5
         )
-        _draw(successes, one, one.explored_success, one.tried_success, palette)
+        shares = one.explored_success, one.tried_success
+        _draw(successes, one, shares, one.final[1], palette)
         entries = [
             line_entry(
                 f"the best so far, in {one.worlds}\nother worlds each time", **_tried(palette)
@@ -74,15 +77,18 @@ def draw_training(
 
 
 def _kept(one: Improving) -> str:
-    reward, success = one.tried[one.best], one.tried_success[one.best]
-    return f"what is kept, as it won:\nreward {number(reward)}, success {100.0 * success:.0f} %"
+    reward, success = one.final
+    return f"what is kept, in the last\nrace: reward {number(reward)},\nsuccess {success:.0%}"
 
 
-def _draw(axes: Axes, one: Improving, explored: Array, tried: Array, palette: Palette) -> None:
+def _draw(
+    axes: Axes, one: Improving, curves: tuple[Array, Array], final: float, palette: Palette
+) -> None:
+    """What exploring got, and the best lists; a ring for the one that is kept."""
+    explored, tried = curves
     axes.plot(one.episodes, explored, zorder=3, **_explored(palette))
     axes.plot(one.episodes, tried, zorder=4, **_tried(palette))
-    place = one.episodes[one.best], tried[one.best]
-    axes.plot(*place, zorder=5, clip_on=False, **_best(palette))
+    axes.plot(one.episodes[one.best], final, zorder=5, clip_on=False, **_best(palette))
 
 
 def _tried(palette: Palette) -> Look:

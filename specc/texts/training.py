@@ -101,12 +101,12 @@ def _compaction(trained: Trained) -> list[str]:
     """What it costs that the rules are few."""
     few, votes = trained.judged[0], trained.judged[1]
     cost = votes.trial.reward - few.trial.reward
-    became = f"{counted(votes.rules or 0, 'rule')} became {few.rules} by compaction"
+    decided = f"to decide by {counted(few.rules or 0, 'rule')} and not by the vote of {votes.rules}"
     if abs(cost) <= SAME * abs(votes.trial.reward):
-        return [f"{became}, which costs no reward"]
+        return [f"{decided} costs no reward"]
     if cost > 0.0:
-        return [f"{became}, which costs {number(cost)} of the reward of an episode"]
-    return [f"{became}, which costs nothing: the few get {number(-cost)} more in an episode"]
+        return [f"{decided} costs {number(cost)} of the reward of an episode"]
+    return [f"{decided} costs nothing: it gets {number(-cost)} more in an episode"]
 
 
 def _failures(trained: Trained) -> list[str]:

@@ -36,9 +36,9 @@ def challengers_of(
         return found.lists
     chance = np.random.default_rng([settings.seed, number, VARYING])
     actions = len(trained_arbiter(scenario).choices)
-    variation = Variation(found.lists, lived.x, actions, settings.rules, chance)
+    variation = Variation(found.lists, found.x, actions, settings.rules, chance)
     varied = (variation.of(champion) for _ in range(settings.varied))
-    return (*found.lists, *(found.counted(shortened(rules, lived.x)) for rules in varied))
+    return (*found.lists, *(found.counted(shortened(rules, found.x)) for rules in varied))
 
 
 def policy_of(lived: Steps, scenario: Scenario, settings: Settings, number: int) -> Found:
@@ -53,10 +53,15 @@ def policy_of(lived: Steps, scenario: Scenario, settings: Settings, number: int)
         len(arbiter.choices),
         discount=training_of(scenario).discount,
         learner=settings.learner,
-        seed=settings.seed + number,
+        seed=_seed(settings.seed, number),
         most=settings.rules,
     )
-    return replace(found, lists=tuple(shortened(rules, lived.x) for rules in found.lists))
+    return replace(found, lists=tuple(shortened(rules, found.x) for rules in found.lists))
+
+
+def _seed(*parts: int) -> int:
+    """One number that follows from several, and hardly from others."""
+    return int(np.random.SeedSequence(parts).generate_state(1)[0])
 
 
 def ranges_of(arbiter: Arbiter) -> tuple[Array, Array]:

@@ -8,17 +8,18 @@ from typing import Any, Final
 import numpy as np
 
 from lcs.arrays import Array
-from lcs.policies.decision_list import DecisionList
+from lcs.policies.decision_list import OF_EACH, DecisionList
 from lcs.policies.steps import Steps, joined
 from specc.faults import fault
 from specc.files import write_atomically
 from specc.kept import UNREADABLE
-from specc.training.training import Course, Failure, Generation, Took, Trial
+from specc.training.course import Course, Failure, Generation, Took, Trial
 
 CHECKPOINT: Final = "checkpoint.npz"
+VERSION: Final = 1
+"""Of what its columns mean."""
 
 OF_STEPS: Final = tuple(each.name for each in fields(Steps))
-OF_RULES: Final = ("action", "lower", "upper", "right", "wrong")
 DAMAGED: Final = "begin again in another folder"
 
 
@@ -31,6 +32,7 @@ def keep(course: Course, path: Path) -> None:
     steps, every = joined(course.lived), course.generations
     failed = [each.failed for each in every]
     columns: dict[str, Any] = {
+        "version": VERSION,
         "lengths": [len(each) for each in course.lived],
         **{name: getattr(steps, name) for name in OF_STEPS},
         "episodes": [each.episodes for each in every],
@@ -45,7 +47,7 @@ def keep(course: Course, path: Path) -> None:
         "rules": [len(each.rules) for each in every],
         "otherwise": [each.rules.otherwise for each in every],
     }
-    for name in OF_RULES:
+    for name in OF_EACH:
         columns[f"rules_{name}"] = np.concatenate([getattr(each.rules, name) for each in every])
     content = io.BytesIO()
     np.savez(content, **columns)
@@ -67,9 +69,16 @@ def taken_up(path: Path) -> Course:
 
 
 def _course(kept: dict[str, Any]) -> Course:
+    """What the columns say.
+
+    Raises:
+        KeyError, ValueError: they are of another version, or do not fit together.
+    """
+    if int(kept["version"]) != VERSION:
+        raise ValueError("it is of another version")
     of_steps = [_parts(kept[name], kept["lengths"]) for name in OF_STEPS]
     lived = [Steps(*columns) for columns in zip(*of_steps, strict=True)]
-    of_rules = [_parts(kept[f"rules_{name}"], kept["rules"]) for name in OF_RULES]
+    of_rules = [_parts(kept[f"rules_{name}"], kept["rules"]) for name in OF_EACH]
     columns_of = zip(*of_rules, strict=True)
     rules = [
         DecisionList(action, lower, upper, right, wrong, otherwise)
@@ -78,7 +87,7 @@ def _course(kept: dict[str, Any]) -> Course:
         )
     ]
     failed = _parts(kept["failed"], kept["failures"])
-    generations = [
+    generations = tuple(
         Generation(
             episodes=int(kept["episodes"][g]),
             decisions=int(kept["decisions"][g]),
@@ -91,8 +100,8 @@ def _course(kept: dict[str, Any]) -> Course:
             took=Took(*kept["took"][g].tolist()),
         )
         for g in range(len(rules))
-    ]
-    return Course(lived, generations)
+    )
+    return Course(tuple(lived), generations)
 
 
 def _parts(column: Any, lengths: Any) -> list[Any]:

@@ -8,6 +8,7 @@ from typing import Final, final
 
 import numpy as np
 
+from lcs.faults import LearnerError
 from lcs.policies.policy import Policy
 from lcs.policies.steps import Steps
 from runtime.arbiter import Arbiter
@@ -90,6 +91,7 @@ def lived(scenario: Scenario, task: Task, ticks: LastTicks | None = None) -> Epi
     Raises:
         NoRoomError: there is no room for what is placed at random.
         UserCodeError: the scenario needs Python of the user's own.
+        LearnerError: a reward, or what is read, is not finite.
     """
     began = process_time()
     training, arbiter = training_of(scenario), trained_arbiter(scenario)
@@ -114,6 +116,7 @@ def lived(scenario: Scenario, task: Task, ticks: LastTicks | None = None) -> Epi
     results = results_on(required, live.sampled(times, course.rows), float(times[-1]))
     own = len(scenario.requirements)
     rewards = rewards_of(training, course.rows, course.decided, _robustness(results[own:]))
+    _refuse_endless(rewards)
     return Episode(
         steps=_steps(exploring, rewards, ends=course.ends),
         total=float(rewards.sum()),
@@ -122,6 +125,18 @@ def lived(scenario: Scenario, task: Task, ticks: LastTicks | None = None) -> Epi
         running=course.running,
         rewarding=process_time() - began - course.running,
     )
+
+
+def _refuse_endless(rewards: Array) -> None:
+    """Stop where one is not finite: it would outweigh all others.
+
+    Raises:
+        LearnerError: one is not.
+    """
+    endless = np.flatnonzero(~np.isfinite(rewards))
+    if len(endless):
+        first = int(endless[0])
+        raise LearnerError(f"the reward of decision {first} is not finite: {rewards[first]}")
 
 
 def training_of(scenario: Scenario) -> Training:
@@ -191,13 +206,20 @@ def _steps(exploring: Exploring, rewards: Array, *, ends: bool) -> Steps:
     after = reads[1 : count + 1]
     if len(after) < count:
         after = np.concatenate([after, reads[-1:]])
-    last = np.zeros(count, np.bool_)
-    last[-1:] = ends
-    return Steps(reads[:count], np.array(exploring.choices[:count]), rewards, after, last)
+    last = np.arange(count) == count - 1
+    choices = np.array(exploring.choices[:count])
+    return Steps(reads[:count], choices, rewards, after, last, last & ends)
 
 
 def _robustness(results: Sequence[RequirementResult]) -> Mapping[str, float]:
-    return {result.text: result.robustness for result in results}
+    """By its text the robustness of each, finite where the episode ended before all was seen."""
+    return {result.text: _as_far_as_seen(result) for result in results}
+
+
+def _as_far_as_seen(result: RequirementResult) -> float:
+    """The bound that decides; the other where nothing bounds it there, and 0 where nothing does."""
+    bounds = result.robustness, result.low, result.high
+    return next((bound for bound in bounds if np.isfinite(bound)), 0.0)
 
 
 def _nothing() -> float:

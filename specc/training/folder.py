@@ -21,9 +21,9 @@ from specc.files import json_bytes, write_atomically
 from specc.kept import record_in, refuse_file, refuse_taken
 from specc.loading import load_scenario
 from specc.training.checkpoint import CHECKPOINT, keep, taken_up
+from specc.training.course import Course
 from specc.training.episode import trained_arbiter, training_of
 from specc.training.settings import Settings
-from specc.training.training import Course
 
 TRAINING: Final = "training.json"
 SCENARIO: Final = "scenario.specc"
@@ -131,12 +131,14 @@ def _begun_of(record: Mapping[str, Any]) -> Begun:
     values = dict(record)
     if values.pop("version") != VERSION:
         raise ValueError("it is of another version")
-    settings = Settings(**values.pop("settings"))
-    for each in dataclasses.fields(Settings):
-        given, usual = getattr(settings, each.name), each.default
-        if type(given) is not type(usual):
-            raise TypeError(f"'{each.name}' has {given!r}")
-    return Begun(**values, settings=settings)
+    given = values.pop("settings")
+    missing = {each.name for each in dataclasses.fields(Settings)} - set(given)
+    if missing:
+        raise ValueError(f"it lacks {', '.join(sorted(missing))}")
+    begun = Begun(**values, settings=Settings(**given))
+    if not isinstance(begun.scenario, str) or type(begun.held_out) is not int:
+        raise TypeError("'scenario' is a path, and 'held_out' a number of worlds")
+    return begun
 
 
 def _essence(scenario: Scenario) -> bytes:

@@ -14,9 +14,10 @@ from lcs.policies.policy import Policy
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.machine import evaluate
+from specc.training.course import Trial, trial_of
 from specc.training.episode import Task
 from specc.training.living import Progress, live_through
-from specc.training.training import AtRandom, Trial, trial_of
+from specc.training.training import AtRandom
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 from verifier.arbitration.shares import interval_of
@@ -68,9 +69,9 @@ def judged(
     workers: Workers,
     tell: Progress,
 ) -> tuple[Judged, ...]:
-    """What was learnt, the same before compaction, the arbiter as it was, and chance.
+    """What was learnt, all rules learnt in its generation, the arbiter as it was, and chance.
 
-    learnt: the list, and all rules that it was chosen from. arbiter: before training. worlds: how
+    learnt: the list, and these rules. arbiter: before training. worlds: how
     many, the same for all.
     """
     done: list[Judged] = []
@@ -103,7 +104,7 @@ def _beside(
 ) -> Iterator[tuple[str, int | None, Policy, float]]:
     """What is judged: its name, how many rules it has, its policy, and how much it tries."""
     yield "what was learnt", len(rules), rules, 0.0
-    yield "all rules, by their vote", len(table), Voting(table, rules.otherwise), 0.0
+    yield "all rules learnt then, by their vote", len(table), Voting(table, rules.otherwise), 0.0
     if len(arbiter.rules) > 1:  # the last one always holds
         yield "the arbiter as it was", len(arbiter.rules) - 1, AsItWas(arbiter), 0.0
     yield "choices at random", None, AtRandom(), 1.0

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
+import numpy as np
+
 from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.library import Library
 from compiler.findings import Findings
-from lcs.policies.decision_list import always
+from lcs.policies.decision_list import always, uncounted
 from lcs.policies.steps import joined
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
@@ -19,13 +21,14 @@ from spec_schema.load import Loaded, load, load_source
 from spec_schema.source import Source
 from specc.faults import fault
 from specc.training.challengers import policy_of
+from specc.training.course import Course, Generation, Trial
 from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
 from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
-from specc.training.training import Course, Generation, Trial, best_of
+from specc.training.training import best_of
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
@@ -39,8 +42,9 @@ class Trained:
 
     scenario: as it was begun with. source, edited: the arbiter's text, and that with its rules.
     arbiter: compiled from the latter; warnings: on the way. course: all generations. best: that
-    whose rules these are; final: how these did in the last race. table: all rules that lists of
-    that generation were chosen from. judged: these beside others, where any worlds were held out.
+    whose rules these are; final: how these did in the last race. table: all rules that were learnt
+    in that generation, of the first draw. judged: these beside others, where any worlds were held
+    out.
     """
 
     begun: Begun
@@ -75,6 +79,9 @@ def concluded(
         course: all that was lived and learnt.
         workers: live the episodes in which it is judged.
         tell: is told what is done, how much of it, and of how much.
+
+    Raises:
+        NoRoomError, UserCodeError, LearnerError, SpecError: as `go_on`.
     """
     best, final = best_of(course, begun.settings, workers, tell)
     tell("learning once more what was best", 0, 1)
@@ -103,7 +110,7 @@ def concluded(
 
 
 def table_of(best: Generation, course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
-    """All rules that lists of a generation were chosen from, learnt again: they are not kept."""
+    """All rules that a generation learnt in its first draw, learnt again: they are not kept."""
     number = course.generations.index(best)
     lived = joined(course.lived[: best.episodes])
     return policy_of(lived, scenario, begun.settings, number).tables[0]
@@ -117,8 +124,11 @@ def text_of(scenario: Scenario, learner: str) -> Loaded:
     """
     arbiter = trained_arbiter(scenario)
     loaded = load(Path(arbiter.source.file))
+    nothing = np.full((1, len(arbiter.reads)), np.inf)
+    one_rule = uncounted(np.zeros(1, np.int64), -nothing, nothing, 0)
     try:
-        with_rules(loaded, arbiter, learner, always(0, len(arbiter.reads)))
+        for rules in (always(0, len(arbiter.reads)), one_rule):
+            with_rules(loaded, arbiter, learner, rules)
     except EditError as error:
         message = f"rules can't be written into this arbiter: {error}"
         raise fault("V415", arbiter.source.file, message, BY_HAND) from error

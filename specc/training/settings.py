@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Final, final
 
+LEARNERS: Final = ("alcsr", "xcsr")
 HELD_OUT: Final = 100
 """Worlds in which the best policy is judged in the end."""
 
@@ -18,6 +19,9 @@ class Settings:
     like the best that race with it and with what is learnt. tried_in: worlds of a race. patience:
     it stops early after so many races that the same list won. rules: at most. again: at most this
     share of those that explore goes back to where the best failed. seed: of all chance.
+
+    Raises:
+        ValueError: one of them is of no use.
     """
 
     learner: str = "alcsr"
@@ -31,3 +35,22 @@ class Settings:
     rules: int = 20
     again: float = 0.25
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what nothing can be trained with."""
+        known = self.learner in LEARNERS
+        whole = all(type(each) is int for each in (*self._counts, self.varied, self.seed))
+        shares = all(type(each) is float and 0.0 <= each <= 1.0 for each in self._shares)
+        if not (known and whole and shares):
+            raise ValueError("a setting is of another kind")
+        if min(self._counts) < 1 or min(self.varied, self.seed) < 0:
+            raise ValueError("a setting is too small")
+
+    @property
+    def _counts(self) -> tuple[int, ...]:
+        explored = self.episodes, self.first, self.each
+        return (*explored, self.tried_in, self.patience, self.rules)
+
+    @property
+    def _shares(self) -> tuple[float, ...]:
+        return self.explore, self.again

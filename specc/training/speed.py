@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import final
 
+from specc.training.course import Course
 from specc.training.pace import Pace
-from specc.training.training import Course
 
 
 @final

@@ -1,7 +1,7 @@
 """Training: explore, learn from all that was lived, let what was learnt race with the best."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Final, final
 
@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from lcs.arrays import Integers
-from lcs.policies.decision_list import DecisionList
-from lcs.policies.steps import Steps, joined
+from lcs.policies.steps import joined
 from runtime.scenario import Scenario
 from specc.training.challengers import challengers_of
+from specc.training.course import Course, Failure, Generation, Took, Trial, trial_of
 from specc.training.episode import Episode, Task
 from specc.training.living import Progress, live_through
 from specc.training.race import raced
@@ -23,98 +23,10 @@ from specc.training.worlds import For, world
 AGAIN: Final = 2
 """What sets the chance of which failures are lived again apart from other chance."""
 
-LAST: Final = 3
-"""The last race has the worlds of so many."""
 BEFORE: Final = 30
 """Decisions before a failure, at most, at which something else is tried."""
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """How a policy did in some worlds: means of episodes, `success` a share of them.
-
-    decisions: of all episodes together.
-    """
-
-    reward: float
-    success: float
-    seconds: float
-    decisions: int
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class Took:
-    """Seconds of the computer: for exploring, for learning and for trying."""
-
-    exploring: float
-    learning: float
-    trying: float
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class Failure:
-    """The seed of a world in which a policy failed, and after how many decisions."""
-
-    world: int
-    decisions: int
-
-
-@final
-@dataclass(frozen=True, eq=False, slots=True)
-class Generation:
-    """What was learnt from so many episodes and decisions, and what is best since its race.
-
-    explored: the last of these episodes. rules: the best of the lists that challenged the best so
-    far. is_new: it won. tried: who won, in the worlds of the race. failed: where that did. raced:
-    decisions of all lists in it, from which later generations learn. took: no part of what follows
-    from the seed.
-    """
-
-    episodes: int
-    decisions: int
-    explored: Trial
-    tried: Trial
-    failed: tuple[Failure, ...]
-    rules: DecisionList
-    is_new: bool
-    raced: int
-    took: Took
-
-
-@final
-@dataclass(slots=True)
-class Course:
-    """A training so far: everything that it goes on from.
-
-    lived: of each episode, those that explored in a generation before those of its race.
-    """
-
-    lived: list[Steps] = field(default_factory=list)
-    generations: list[Generation] = field(default_factory=list)
-
-    @property
-    def champion(self) -> Generation:
-        """The generation whose list won last."""
-        return next(each for each in reversed(self.generations) if each.is_new)
-
-    @property
-    def episodes(self) -> int:
-        """How many were lived."""
-        return len(self.lived)
-
-    def is_over(self, settings: Settings) -> bool:
-        """Whether all episodes are lived, or it got no better for long enough."""
-        if not self.generations:
-            return False
-        return self.episodes >= settings.episodes or self.is_stale(settings)
-
-    def is_stale(self, settings: Settings) -> bool:
-        """Whether no other list won for long enough."""
-        behind = len(self.generations) - 1 - self.generations.index(self.champion)
-        return behind >= settings.patience
+LAST: Final = 3
+"""The last race has the worlds of so many others."""
 
 
 @final
@@ -133,26 +45,39 @@ def go_on(
     settings: Settings,
     workers: Workers,
     tell: Progress,
-    keep: Callable[[], None],
-) -> None:
-    """Train until it is over.
+    keep: Callable[[Course], None],
+) -> Course:
+    """Train until it is over; the whole course.
 
     Everything that a generation does follows from the steps lived so far, the settings and its
     number. So a training that was interrupted goes on as if it had not been.
 
-    tell: is told how it stands, how many episodes are lived, and of how many. keep: is called
-    after each generation.
+    Args:
+        course: the training so far.
+        scenario: one that trains.
+        settings: how it is gone about.
+        workers: live the episodes.
+        tell: is told how it stands, how many episodes are lived, and of how many.
+        keep: is given the course after each generation.
+
+    Raises:
+        NoRoomError: there is no room for what is placed at random.
+        UserCodeError: the scenario needs Python of the user's own.
+        LearnerError: what is read, or rewarded, is not finite.
+        SpecError: a process that lived episodes is gone (V417).
     """
     while not course.is_over(settings):
-        course.generations.append(_generation(course, scenario, settings, workers, tell))
-        keep()
+        course = _one_more(course, scenario, settings, workers, tell)
+        keep(course)
+    return course
 
 
-def _generation(
+def _one_more(
     course: Course, scenario: Scenario, settings: Settings, workers: Workers, tell: Progress
-) -> Generation:
+) -> Course:
+    """The course with one more generation."""
     standing, most, done_so_far = _standing(course), settings.episodes, course.episodes
-    tasks = exploring_tasks(course, settings)
+    number = len(course.generations)
 
     def told(what: str, done: int, of: int) -> None:
         nonlocal done_so_far
@@ -160,35 +85,35 @@ def _generation(
         tell(f"{what} {done} of {of}{standing}", min(done_so_far, most), most)
 
     clock = [perf_counter()]
-    episodes = live_through(workers, tasks, "exploring", told)
+    episodes = live_through(workers, exploring_tasks(course, settings), "exploring", told)
     clock.append(perf_counter())
     tell(f"learning{standing}", min(done_so_far, most), most)
-    lived = [*course.lived, *(episode.steps for episode in episodes)]
+    lived = (*course.lived, *(episode.steps for episode in episodes))
     champion = course.champion.rules if course.generations else None
-    challengers = challengers_of(
-        joined(lived), champion, scenario, settings, len(course.generations)
-    )
+    challengers = challengers_of(joined(lived), champion, scenario, settings, number)
     clock.append(perf_counter())
-    worlds = choosing_worlds(len(course.generations), settings)
+    worlds = choosing_worlds(number, settings)
     race = raced(champion, challengers, worlds, workers, told)
     clock.append(perf_counter())
-    winner = race.winner
-    course.lived = [*lived, *(episode.steps for episode in race.episodes)]
-    return Generation(
+    made = Generation(
         episodes=len(lived),
         decisions=sum(len(steps) for steps in lived),
         explored=trial_of(episodes),
-        tried=trial_of(winner.episodes),
-        failed=tuple(
-            Failure(seed, len(each.steps))
-            for seed, each in zip(worlds, winner.episodes, strict=True)
-            if not each.succeeded
-        ),
+        tried=trial_of(race.winner.episodes),
+        failed=_failures(worlds, race.winner.episodes),
         rules=race.challenger.rules,
-        is_new=not winner.is_champion,
+        is_new=not race.winner.is_champion,
         raced=sum(len(each.steps) for each in race.episodes),
         took=Took(*np.diff(clock).tolist()),
     )
+    everything = (*lived, *(episode.steps for episode in race.episodes))
+    return Course(everything, (*course.generations, made))
+
+
+def _failures(worlds: Sequence[int], episodes: Sequence[Episode]) -> tuple[Failure, ...]:
+    """Those of the worlds where something that is required was not satisfied."""
+    pairs = zip(worlds, episodes, strict=True)
+    return tuple(Failure(seed, len(each.steps)) for seed, each in pairs if not each.succeeded)
 
 
 def best_of(
@@ -198,6 +123,9 @@ def best_of(
 
     That one is longer than those before, in worlds of its own, and who did not beat the best of
     its time for sure runs again: it may well be better.
+
+    Raises:
+        NoRoomError, UserCodeError, SpecError: as `go_on`.
     """
     every, after = course.generations, len(course.generations)
     worlds = [each for i in range(LAST) for each in choosing_worlds(after + i, settings)]
@@ -233,16 +161,6 @@ def exploring_tasks(course: Course, settings: Settings) -> list[Task]:
         first_try = max(failure.decisions - 1 - int(chance.integers(BEFORE)), 0)
         tasks[place] = replace(tasks[place], world=failure.world, first_try=first_try)
     return tasks
-
-
-def trial_of(episodes: Sequence[Episode]) -> Trial:
-    """The means."""
-    return Trial(
-        reward=float(np.mean([each.total for each in episodes])),
-        success=float(np.mean([each.succeeded for each in episodes])),
-        seconds=float(np.mean([each.seconds for each in episodes])),
-        decisions=sum(len(each.steps) for each in episodes),
-    )
 
 
 def _standing(course: Course) -> str:

@@ -23,7 +23,7 @@ def warm(learner: str) -> None:
     x, action = chance.random((STEPS, 2)), chance.integers(2, size=STEPS)
     reward = (action == (x[:, 0] > 0.5)).astype(float)
     ends = np.zeros(STEPS, np.bool_)
-    steps = Steps(x, action, reward, np.roll(x, -1, axis=0), ends)
+    steps = Steps(x, action, reward, np.roll(x, -1, axis=0), ends, ends)
     ranges = np.zeros(2), np.ones(2)
     found = found_policy(steps, ranges, 2, discount=0.5, learner=learner, seed=0)
     Voting(found.tables[0], 0).decide(x)

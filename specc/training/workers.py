@@ -6,17 +6,21 @@ import tempfile
 import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from functools import cache
 from multiprocessing import parent_process
 from multiprocessing.connection import wait
 from pathlib import Path
 from types import TracebackType
-from typing import Self, final
+from typing import Final, Self, final
 
 from runtime.scenario import Scenario
 from runtime.scenario_artifact import from_bytes, to_bytes
+from specc.faults import fault
 from specc.training.episode import Episode, Task, lived
+
+FEWER: Final = "take fewer --jobs; what a folder (-o) keeps goes on with --resume"
 
 
 @final
@@ -56,10 +60,21 @@ class Workers:
         self._open.close()
 
     def lived(self, tasks: Sequence[Task]) -> Iterator[Episode]:
-        """What came of each, in their order, as soon as it is known."""
+        """What came of each, in their order, as soon as it is known.
+
+        Raises:
+            NoRoomError: there is no room for what is placed at random.
+            UserCodeError: the scenario needs Python of the user's own.
+            SpecError: a process is gone (V417).
+        """
         if self._pool is None:
-            return (lived(self._scenario, task) for task in tasks)
-        return self._pool.map(_lived_there, [self._file] * len(tasks), tasks)
+            yield from (lived(self._scenario, task) for task in tasks)
+            return
+        try:
+            yield from self._pool.map(_lived_there, [self._file] * len(tasks), tasks)
+        except BrokenProcessPool as error:
+            message = "a process that lived episodes is gone: was it killed, or memory short?"
+            raise fault("V417", self._scenario.source.file, message, FEWER) from error
 
 
 def _lived_there(file: Path, task: Task) -> Episode:

@@ -66,6 +66,7 @@ def _curves(trained: Trained, style: Style) -> Picture:
         low=low,
         high=high,
         best=every.index(trained.best),
+        final=(trained.final.reward, trained.final.success),
         worlds=settings.tried_in,
     )
     about = (

@@ -14,6 +14,7 @@ ONE = Improving(
     low=np.array([0.25, 0.76, 0.53]),
     high=np.array([0.57, 0.97, 0.83]),
     best=1,
+    final=(5.0, 0.8),
     worlds=40,
 )
 
@@ -22,15 +23,15 @@ def test_both_panels_mark_the_best_and_tell_trials_from_exploring() -> None:
     figure = draw_training(ONE, "pen")
     rewards, successes = figure.axes
 
-    for axes, explored, tried in (
-        (rewards, ONE.explored, ONE.tried),
-        (successes, ONE.explored_success, ONE.tried_success),
+    for axes, explored, tried, final in (
+        (rewards, ONE.explored, ONE.tried, 5.0),
+        (successes, ONE.explored_success, ONE.tried_success, 0.8),
     ):
         lines = [np.asarray(line.get_xydata()) for line in axes.lines]
         assert [len(line) for line in lines] == [3, 3, 1]
         assert (lines[0] == np.stack([ONE.episodes, explored], axis=1)).all()
         assert (lines[1] == np.stack([ONE.episodes, tried], axis=1)).all()
-        assert lines[2].tolist() == [[80.0, tried[1]]]
+        assert lines[2].tolist() == [[80.0, final]]
 
 
 def test_success_has_its_interval() -> None:

@@ -39,8 +39,10 @@ from tests.specc.training_scenes import FILES, SMALL, equal, in_silence, pen_in,
 
 TRIAL = Trial(1.0, 0.5, 3.0, 7)
 FAILED = Failure(11, 40), Failure(12, 3)
+SAFE = "{robustness: always within 3 s r.clearance > -1 m}"
 NOTHING = Steps(
-    *(np.zeros((0, 1)), np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 1)), np.zeros(0, np.bool_))
+    *(np.zeros((0, 1)), np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 1))),
+    *(np.zeros(0, np.bool_), np.zeros(0, np.bool_)),
 )
 
 
@@ -79,7 +81,7 @@ def test_a_training_that_goes_on_from_its_checkpoint_learns_the_same(
     first, last = whole.generations
     after_first = whole.lived[: last.episodes - SMALL.each]
     assert len(after_first) > first.episodes, "what raced is learnt from, too"
-    keep(Course(after_first, [first]), tmp_path / "first.npz")
+    keep(Course(after_first, (first,)), tmp_path / "first.npz")
 
     resumed = trained(pen, course=taken_up(tmp_path / "first.npz"))
 
@@ -90,7 +92,7 @@ def test_a_training_that_goes_on_from_its_checkpoint_learns_the_same(
 def test_a_checkpoint_holds_everything_to_the_bit(whole: Course, tmp_path: Path) -> None:
     one, other = tmp_path / "one.npz", tmp_path / "other.npz"
     first, last = whole.generations
-    course = Course(whole.lived, [replace(first, failed=FAILED), last])
+    course = Course(whole.lived, (replace(first, failed=FAILED), last))
     keep(course, one)
     kept = taken_up(one)
     keep(kept, other)
@@ -124,7 +126,7 @@ def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course)
 
     assert [each.what for each in beside] == [
         "what was learnt",
-        "all rules, by their vote",
+        "all rules learnt then, by their vote",
         "choices at random",
     ]
     assert beside[0].trial.reward > beside[2].trial.reward + 5.0
@@ -164,7 +166,7 @@ def test_the_arbiter_with_its_rules_decides_in_a_run_as_the_list(
 
 def test_failures_are_lived_again_until_shortly_before_their_end() -> None:
     settings = Settings(episodes=20, first=8, each=8, again=0.25)
-    failing = Course([NOTHING] * 8, [generation(8, FAILED)])
+    failing = Course((NOTHING,) * 8, (generation(8, FAILED),))
     tasks = exploring_tasks(failing, settings)
     again = {task.world: task.first_try for task in tasks if task.first_try is not None}
 
@@ -191,7 +193,7 @@ def test_a_failure_that_is_lived_again_is_the_same_until_something_is_tried(
 
 def test_new_worlds_are_explored_where_nothing_failed() -> None:
     settings = Settings(episodes=10, first=8, each=8)
-    tasks = exploring_tasks(Course([NOTHING] * 8, [generation(8)]), settings)
+    tasks = exploring_tasks(Course((NOTHING,) * 8, (generation(8),)), settings)
 
     assert [task.world for task in tasks] == [world(For.LEARNING, 8), world(For.LEARNING, 9)]
 
@@ -204,13 +206,13 @@ def test_each_generation_races_in_worlds_of_its_own() -> None:
 
 def test_it_stops_where_the_same_list_wins_for_long_enough() -> None:
     settings = Settings(episodes=100, patience=2)
-    every = [generation(10 * i, is_new=i <= 2) for i in range(1, 5)]
-    course = Course([NOTHING] * 40, every)
+    every = tuple(generation(10 * i, is_new=i <= 2) for i in range(1, 5))
+    course = Course((NOTHING,) * 40, every)
 
     assert course.champion is every[1]
     assert course.is_over(settings)
     assert not Course(course.lived, every[:3]).is_over(settings)
-    assert Course([NOTHING] * 100, every[:1]).is_over(settings)
+    assert Course((NOTHING,) * 100, every[:1]).is_over(settings)
 
 
 def test_the_world_alone_takes_a_part_of_an_episode(pen: Scenario) -> None:
@@ -234,3 +236,18 @@ def test_rules_may_change_in_a_training_that_goes_on_and_nothing_else(tmp_path: 
     arbiter.write_text(text.replace("[0, 2]", "[0, 3]"))
     with pytest.raises(SpecError, match="V413"):
         scenario_in(folder, load_scenario(path).scenario)
+
+
+def test_a_requirement_that_an_early_end_leaves_open_is_rewarded_as_far_as_it_was_seen(
+    tmp_path: Path,
+) -> None:
+    path = written_in(tmp_path)
+    text = FILES["pen.yaml"].replace(
+        "room: {least: r.clearance}", f"room: {{least: r.clearance}}\n    safe: {SAFE}"
+    )
+    path.write_text(text.replace("reward: 5 * fast", "reward: safe + 5 * fast"))
+    scenario = load_scenario(path).scenario
+    episodes = [lived(scenario, Task(world(For.LEARNING, i), always(0, 1), 0.0)) for i in range(4)]
+
+    assert any(each.steps.ends[-1] for each in episodes), "one ends before its three seconds"
+    assert all(np.isfinite(each.total) for each in episodes)

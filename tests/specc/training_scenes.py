@@ -7,8 +7,9 @@ from lcs.policies.decision_list import DecisionList
 from runtime.scenario import Scenario
 from specc.loading import load_scenario
 from specc.training.checkpoint import keep
+from specc.training.course import Course
 from specc.training.settings import Settings
-from specc.training.training import Course, go_on
+from specc.training.training import go_on
 from specc.training.workers import Workers
 
 SMALL: Final = Settings(episodes=20, first=6, each=6, varied=2, tried_in=3, rules=3)
@@ -138,13 +139,13 @@ def trained(
     scenario: Scenario, *, jobs: int = 1, course: Course | None = None, kept: Path | None = None
 ) -> Course:
     """The course of a small training, from its beginning or from where it is."""
-    course = course or Course()
+
+    def keeping(now: Course) -> None:
+        if kept is not None:
+            keep(now, kept)
+
     with Workers(scenario, jobs) as workers:
-        go_on(
-            *(course, scenario, SMALL, workers, in_silence),
-            keep=lambda: keep(course, kept) if kept is not None else None,
-        )
-    return course
+        return go_on(course or Course(), scenario, SMALL, workers, in_silence, keeping)
 
 
 def in_silence(_what: str, _done: int, _of: int) -> None:
