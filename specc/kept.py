@@ -53,5 +53,6 @@ def record_in(path: Path, code: str, kept: str, made: Callable[[Any], Record]) -
     try:
         return made(json.loads(path.read_text(encoding="utf-8")))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
+        why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         remedy = "begin again in another folder"
-        raise fault(code, path, f"this is no {kept} of this specc: {error}", remedy) from error
+        raise fault(code, path, f"this is no {kept} of this specc: {why}", remedy) from error

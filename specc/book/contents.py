@@ -12,7 +12,6 @@ from runtime.world.model import Body
 from spec_schema.diagnostics import Diagnostic
 from specc import loading
 from specc.book.manifest import ARTIFACTS, Setting
-from specc.book.origins import renamed
 from specc.book.rehearsing import trial_of
 from specc.book.settings import DEFAULT, settings_of
 from specc.book.sources import Sources, sources_of
@@ -22,6 +21,7 @@ from specc.book.trials import NO_TRIAL, Trial
 from specc.book.views import Decisions, View, decisions_at, views_at
 from specc.faults import fault
 from specc.figures.rate_plane import RatePlane
+from specc.origins import renamed
 from specc.scenarios.simulating import Simulation, simulate_scenario
 from verifier.report.requirement_results import RequirementResult
 

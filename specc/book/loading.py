@@ -12,8 +12,8 @@ from runtime.world.model import Body
 from specc import loading
 from specc.book.folder import read_book
 from specc.book.manifest import Book
-from specc.book.origins import renamed
 from specc.book.sources import sources_of
+from specc.origins import renamed
 
 
 @final

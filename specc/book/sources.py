@@ -14,8 +14,8 @@ from spec_schema.load import examine
 from spec_schema.node import plain
 from spec_schema.source import Source
 from spec_schema.yaml_reader import read
-from specc.book.origins import files_named
 from specc.faults import fault
+from specc.origins import files_named
 
 SPECS: Final = "specs"
 """The folder of a book that holds them."""

@@ -154,9 +154,11 @@ def _begun(path: Path | None, asked: Asked, given: Output) -> Status:
         raise typer.BadParameter("SCENARIO is missing: a .yaml that says what to `train`")
     scenario = _scenario(path)
     usual = Settings()
+    episodes = asked.episodes or usual.episodes
     settings = Settings(
         learner=_learner(scenario) if asked.learner is None else asked.learner.value,
-        episodes=asked.episodes or usual.episodes,
+        episodes=episodes,
+        first=min(usual.first, -(-episodes // 3)),
         rules=asked.rules or usual.rules,
         seed=asked.seed or usual.seed,
     )
@@ -175,7 +177,8 @@ def _resumed(path: Path | None, asked: Asked, given: Output) -> Status:
     if given.folder is None:
         raise typer.BadParameter("name the folder that --resume goes on with: -o FOLDER")
     begun = begun_in(given.folder)
-    if asked.is_something or path not in {None, Path(begun.scenario)}:
+    is_other = path is not None and path.resolve() != Path(begun.scenario).resolve()
+    if asked.is_something or is_other:
         raise typer.BadParameter(
             f"--resume goes on with the training of {begun.scenario} that {given.folder} keeps, "
             f"as it was begun: leave out what else is said"

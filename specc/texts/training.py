@@ -60,13 +60,14 @@ def training_record(trained: Trained) -> dict[str, Any]:
 def _head(trained: Trained) -> str:
     settings, course = trained.begun.settings, trained.course
     trains = training_of(trained.scenario).arbiter
-    best, count = trained.best, len(course.generations)
-    lived = f"{counted(best.episodes, 'episode')}, {counted(best.decisions, 'decision')}"
+    last, count = course.generations[-1], len(course.generations)
+    lived = f"{counted(course.episodes, 'episode')}, {last.decisions + last.raced:,} decisions"
     lines = [f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"]
     lines.append(
         wrapped(
-            f"from {lived}; in {counted(LAST * settings.tried_in, 'world')} more the best of "
-            f"what {counted(count, 'generation')} brought{_ending(trained)}"
+            f"lived {lived}, in {counted(count, 'generation')}{_ending(trained)}; what is kept was "
+            f"best in {counted(LAST * settings.tried_in, 'world')} more, with success in "
+            f"{trained.final.success:.0%} of them".replace("%", " %")
         )
     )
     return "\n".join(lines)
@@ -76,9 +77,8 @@ def _ending(trained: Trained) -> str:
     settings, course = trained.begun.settings, trained.course
     if course.episodes >= settings.episodes:
         return ""
-    lived = f"{course.episodes:,} of {counted(settings.episodes, 'episode')}"
-    after = counted(settings.patience, "race")
-    return f"; it stopped early, after {lived}, since nothing beat the same list in {after}"
+    most, after = f"{settings.episodes:,}", counted(settings.patience, "race")
+    return f" (it stopped before {most}: nothing beat the same list in {after})"
 
 
 def _judged_text(trained: Trained) -> str:

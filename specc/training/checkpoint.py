@@ -74,7 +74,7 @@ def _course(kept: dict[str, Any]) -> Course:
     Raises:
         KeyError, ValueError: they are of another version, or do not fit together.
     """
-    if int(kept["version"]) != VERSION:
+    if int(kept.get("version", 0)) != VERSION:
         raise ValueError("it is of another version")
     of_steps = [_parts(kept[name], kept["lengths"]) for name in OF_STEPS]
     lived = [Steps(*columns) for columns in zip(*of_steps, strict=True)]

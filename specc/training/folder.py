@@ -7,7 +7,8 @@ checkpoint.npz    all that was lived, and each policy, to go on from
 """
 
 import dataclasses
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final, final
@@ -20,6 +21,7 @@ from specc.faults import fault
 from specc.files import json_bytes, write_atomically
 from specc.kept import record_in, refuse_file, refuse_taken
 from specc.loading import load_scenario
+from specc.origins import renamed
 from specc.training.checkpoint import CHECKPOINT, keep, taken_up
 from specc.training.course import Course
 from specc.training.episode import trained_arbiter, training_of
@@ -39,7 +41,8 @@ VERSION: Final = 1
 class Begun:
     """What is trained, and how: all that its results follow from, beside the scenario itself.
 
-    scenario: its path, as it was named. held_out: worlds that are held out for judging.
+    scenario: its path, from where one is; kept is that from the folder. held_out: worlds that are
+    held out for judging.
     """
 
     scenario: str
@@ -61,7 +64,8 @@ def begin_in(folder: Path, begun: Begun, scenario: Scenario) -> None:
     names = (SCENARIO, CHECKPOINT, SUMMARY, RECORD, CURVES, arbiter_name(scenario))
     refuse_taken([folder / name for name in names], "V414", "training")
     write_atomically(folder / SCENARIO, to_bytes(scenario))
-    record = {"version": VERSION, **asdict(begun)}
+    beside = os.path.relpath(begun.scenario, folder)
+    record = {"version": VERSION, **asdict(begun), "scenario": Path(beside).as_posix()}
     write_atomically(folder / TRAINING, json_bytes(record))
 
 
@@ -78,7 +82,8 @@ def begun_in(folder: Path) -> Begun:
     if not path.exists():
         remedy = "name the folder that -o named; or leave --resume out"
         raise fault("V411", folder, f"there is nothing to resume: no {TRAINING}", remedy)
-    return record_in(path, "V412", "training", _begun_of)
+    begun = record_in(path, "V412", "training", _begun_of)
+    return dataclasses.replace(begun, scenario=os.path.relpath(folder / begun.scenario))
 
 
 def scenario_in(folder: Path, now: Scenario) -> Scenario:
@@ -89,9 +94,8 @@ def scenario_in(folder: Path, now: Scenario) -> Scenario:
     """
     kept = load_scenario(folder / SCENARIO).scenario
     if _essence(kept) != _essence(now):
-        message = "the scenario, or a spec in it, has changed since the training was begun"
         remedy = "put it back as it was; or begin again in another folder"
-        raise fault("V413", now.source.file, message, remedy)
+        raise fault("V413", now.source.file, _changed(kept, now), remedy)
     return kept
 
 
@@ -141,8 +145,30 @@ def _begun_of(record: Mapping[str, Any]) -> Begun:
     return begun
 
 
+def _changed(kept: Scenario, now: Scenario) -> str:
+    """What is another since the training was begun."""
+    if kept.name != now.name:
+        return f"this folder trains '{kept.name}', and not '{now.name}'"
+    before = {(Path(each.file).name, each.sha256) for each in _specs(kept)}
+    after = {(Path(each.file).name, each.sha256) for each in _specs(now)}
+    names = sorted({name for name, _ in after - before})
+    what = ", ".join(names) or "the scenario, or something that it reads,"
+    return f"{what} changed since the training was begun"
+
+
+def _specs(scenario: Scenario) -> Iterator[Origin]:
+    """Where all its parts come from, but for the arbiter that is trained."""
+    yield from (scenario.source, scenario.world.source)
+    for robot in scenario.robots:
+        made = robot.architecture
+        yield from (robot.body.source, made.source, *(each.source for each in made.programs))
+    trained = trained_arbiter(scenario)
+    every = (each for robot in scenario.robots for each in robot.architecture.arbiters)
+    yield from (each.source for each in every if each is not trained)
+
+
 def _essence(scenario: Scenario) -> bytes:
-    """All of a scenario but what its trained arbiter decides by, and where that is written."""
+    """All of a scenario but what its trained arbiter decides by, and from where it was read."""
     training, arbiter = training_of(scenario), trained_arbiter(scenario)
     neutral = _neutral(arbiter)
 
@@ -154,7 +180,8 @@ def _essence(scenario: Scenario) -> bytes:
         return dataclasses.replace(robot, architecture=made)
 
     robots = tuple(changed(robot) for robot in scenario.robots)
-    return to_bytes(dataclasses.replace(scenario, robots=robots))
+    whole = dataclasses.replace(scenario, robots=robots)
+    return to_bytes(renamed(whole, lambda file: Path(file).name))
 
 
 def _neutral(arbiter: Arbiter) -> Arbiter:

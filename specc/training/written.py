@@ -71,6 +71,6 @@ def _curves(trained: Trained, style: Style) -> Picture:
     )
     about = (
         f"{settings.learner} learns how {training_of(trained.scenario).arbiter} decides, anew "
-        f"after each {counted(settings.each, 'episode')}, at first from choices at random."
+        f"after each race, at first from {counted(settings.first, 'episode')} at random."
     )
     return draw_training(improving, trained.scenario.name, about=[about], style=style)

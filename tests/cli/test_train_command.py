@@ -157,7 +157,23 @@ def test_a_scenario_that_changed_is_refused(capsys: pytest.CaptureFixture[str]) 
     Path("pen.yaml").write_text(FILES["pen.yaml"].replace("0.03", "0.04"))
 
     assert main(RESUME) == 2
-    assert "pen.yaml: error[V413]: the scenario, or a spec in it" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "pen.yaml: error[V413]: pen.yaml changed since the training was begun" in told
+
+
+def test_a_training_goes_on_from_anywhere(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = begun(held_out=0).absolute()
+    scenario = Path("pen.yaml").absolute()
+    Path("elsewhere").mkdir()
+    monkeypatch.chdir("elsewhere")
+    assert main(["train", str(scenario), "--resume", "-o", str(out)]) == 0
+    assert (out / "choose.yaml").exists()
+
+    written_in(Path())
+    assert main(["train", "pen.yaml", "--resume", "-o", str(out)]) == 2
+    assert "goes on with the training of ../pen.yaml" in " ".join(capsys.readouterr().err.split())
 
 
 def test_an_arbiter_into_which_no_rules_can_be_written_is_refused(

@@ -21,11 +21,11 @@ from specc import loading
 from specc.book import folder, manifest
 from specc.book.export import export_book
 from specc.book.loading import compile_book
-from specc.book.origins import files_named, renamed
 from specc.book.sources import Sources, sources_of
 from specc.book.tables import LARGEST, interpolated, sheets_of
 from specc.book.views import views_at, views_of
 from specc.cli import main
+from specc.origins import files_named, renamed
 from tests.specc.book_scenes import ARCHITECTURE, FILES, SCENARIO, laid_down
 
 

@@ -1,8 +1,7 @@
 """Where the parts of a program come from: the files named in it, and the same under other names.
 
-A program says of every part which file it came from, as its author's shell named that file. In a
-book these are the names that the files have there: so the same specs give the same bytes, wherever
-they lie.
+A program says of every part which file it came from, as its author's shell named that file. Under
+names that depend on no shell the same specs give the same bytes, wherever they lie.
 """
 
 import dataclasses
