@@ -1,6 +1,6 @@
 """All that a book is made of, gathered once: what was compiled, and what was found out of it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, TypeAlias, final
@@ -132,6 +132,7 @@ def _of_scenario(path: Path, progress: Progress, *, allow_code: bool) -> Content
     for robot in scenario.robots:
         alike.setdefault(robot.architecture.source.file, []).append(robot.name)
     first = {robot.architecture.source.file: robot for robot in reversed(scenario.robots)}
+    _refuse_alike(path, [robot.architecture for robot in first.values()])
     return Contents(
         name=scenario.name,
         about=scenario.about,
@@ -148,6 +149,19 @@ def _of_scenario(path: Path, progress: Progress, *, allow_code: bool) -> Content
         ),
         warnings=made.warnings,
     )
+
+
+def _refuse_alike(path: Path, architectures: Sequence[Architecture]) -> None:
+    """Stop where several files have architectures of one name: pages are called by it.
+
+    Raises:
+        SpecError: two do (V437).
+    """
+    for place, one in enumerate(architectures):
+        for other in architectures[:place]:
+            if one.name == other.name:
+                message = f"{other.source.file} and {one.source.file} are both named '{one.name}'"
+                raise fault("V437", path, message, "give one of them another `name`")
 
 
 def drawn(

@@ -77,7 +77,7 @@ def files_of(contents: Contents, progress: Progress, *, with_pdf: bool = True) -
     found[READER] = reader_text().encode()
     found |= _data(contents, names)
     found |= figures_of(contents, names, progress)
-    chapters = chapters_of(contents, names)
+    chapters = chapters_of(contents, names, with_pdf=with_pdf)
     if with_pdf:
         progress("laying out the PDF", 0, 1)
         found[PDF] = typeset(contents.name, contents.about, chapters, _on_paper(found))

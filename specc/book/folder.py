@@ -117,7 +117,7 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
 
 
 def _put(made: Path, target: Path) -> None:
-    """The new book in the place of the old one, which stays until the new one is there."""
+    """The new book in the place of the old one, which is moved aside, and back if that fails."""
     if not target.exists():
         made.rename(target)
         return

@@ -1,5 +1,6 @@
 """The files that a book is made of: every spec that is named, and what specs have beside them."""
 
+import ast
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -102,11 +103,28 @@ def _beside_behavior(program: Program) -> Iterator[Path]:
 
 
 def _modules(folder: Path, *calls: str) -> Iterator[Path]:
-    """The files of `package.module:function` beside a spec, with those that lie beside them."""
-    for call in filter(None, calls):
-        file = folder / Path(*call.partition(":")[0].split(".")).with_suffix(".py")
-        if file.is_file():
+    """The files of `package.module:function` beside a spec, and what they import from beside it."""
+    waiting = [folder / Path(*call.partition(":")[0].split(".")) for call in filter(None, calls)]
+    seen: set[Path] = set()
+    while waiting:
+        file = waiting.pop().with_suffix(".py")
+        if file not in seen and file.is_file():
+            seen.add(file)
             yield file
+            waiting += [folder / Path(*name.split(".")) for name in _imported(file)]
+
+
+def _imported(file: Path) -> Iterator[str]:
+    """The modules that a file imports, by their whole names; none of one that can't be read."""
+    try:
+        tree = ast.parse(file.read_bytes())
+    except (SyntaxError, ValueError):
+        return
+    for each in ast.walk(tree):
+        if isinstance(each, ast.Import):
+            yield from (alias.name for alias in each.names)
+        elif isinstance(each, ast.ImportFrom) and each.module and not each.level:
+            yield each.module
 
 
 def absolute(file: Path | str) -> Path:

@@ -15,7 +15,7 @@ from spec_schema.suggest import did_you_mean
 from specc.book.loading import LoadedBook
 from specc.faults import fault
 from specc.verifying.architecture import NotJudged
-from specc.verifying.book_matching import spec_held
+from specc.verifying.book_matching import SEVERAL, spec_held
 from specc.verifying.book_modules import Piece, Place, pieces_of
 from specc.verifying.recording import verify_standard
 from specc.verifying.runs import Unusable, distinct
@@ -24,6 +24,7 @@ from specc.verifying.standard import Carried, Standard, carried_by
 from specc.verifying.trace import Clock, Verification, verify_by
 from verifier.report.examination import Depth
 from verifier.report.report import SpecIdentity
+from verifier.report.wording import listed
 from verifier.traces.files.log import Progress
 
 NO_MODULE = "V440"
@@ -206,9 +207,11 @@ def _of_log(
 ) -> Iterator[OfModules]:
     """A log of one behavior or arbiter: every module that runs that spec, and that counts."""
     found = claimed_spec(trace, how.spec, how.program_of) or spec_held(book, trace, _pieces(book))
-    pieces = _pieces_named(book, found.program)
+    pieces = _pieces_running(book, found.program)
     if not pieces:
         raise _no_module(book, trace, [found.program.name])
+    if len({_text_of(piece) for piece in pieces}) > 1:
+        raise _several_specs(book, trace, pieces)
     pieces = [piece for piece in pieces if how.counts(piece.place)]
     if not pieces:
         return
@@ -233,15 +236,32 @@ def _pieces(book: LoadedBook) -> list[Piece]:
     return [piece for architecture, _ in book.architectures for piece in pieces_of(architecture)]
 
 
-def _pieces_named(book: LoadedBook, spec: Program | Arbiter) -> list[Piece]:
-    """The modules that run a spec of that name and kind."""
-    return [
+def _pieces_running(book: LoadedBook, spec: Program | Arbiter) -> list[Piece]:
+    """The modules that run this spec; where none does to the letter, those of its name and kind."""
+    alike = [
         piece
         for piece in _pieces(book)
         if type(piece.spec) is type(spec)
         and piece.spec is not None
         and piece.spec.name == spec.name
     ]
+    same = [piece for piece in alike if _text_of(piece) == spec.source.sha256]
+    return same or alike
+
+
+def _text_of(piece: Piece) -> str:
+    """What tells the spec of a module from all others."""
+    assert piece.spec is not None, "code is judged by nobody"
+    return piece.spec.source.sha256
+
+
+def _several_specs(book: LoadedBook, trace: Path, pieces: Sequence[Piece]) -> SpecError:
+    names = [f"{piece.place.architecture}.{piece.place.node}" for piece in pieces]
+    assert pieces[0].spec is not None, "it has a name"
+    message = f"the book has several specs '{pieces[0].spec.name}': of {listed(names)}"
+    files = dict.fromkeys(str(book.path / p.spec.source.file) for p in pieces if p.spec is not None)
+    remedy = f"name the one that is meant, as it stands there: --spec {' or '.join(files)}"
+    return fault(SEVERAL, trace, message, remedy)
 
 
 def _bound(own: Program | Arbiter | None, given: Program | Arbiter) -> Program | Arbiter:

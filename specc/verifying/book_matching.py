@@ -49,7 +49,7 @@ def spec_held(book: LoadedBook, trace: Path, pieces: Sequence[Piece]) -> Found[P
     Raises:
         SpecError: none does (V442), or several do alike (V443); or the log can't be read.
     """
-    specs = {piece.spec.name: piece for piece in pieces if piece.spec is not None}
+    specs = {piece.spec.source.sha256: piece for piece in pieces if piece.spec is not None}
     log = open_log(trace, _names_only(list(specs.values())))
     fits = [_fit(piece, log) for piece in specs.values()]
     whole = [fit for fit in fits if not fit.lacking]
@@ -159,9 +159,10 @@ def _held_by_none(book: LoadedBook, trace: Path, fits: Sequence[_Fit], log: LogF
 
 def _held_by_several(book: LoadedBook, trace: Path, fits: Sequence[_Fit]) -> SpecError:
     names = [fit.spec.name for fit in fits]
+    told = [f"{fit.spec.name} ({fit.spec.source.file})" for fit in fits]
     files = [str(book.path / fit.spec.source.file) for fit in fits]
     message = (
-        f"this log may be of several modules of the book: it holds the names of {listed(names)}"
+        f"this log may be of several modules of the book: it holds the names of {listed(told)}"
     )
     remedy = (
         f"put the module's name into the file's, as in {names[0]}_1{trace.suffix}; name its spec"

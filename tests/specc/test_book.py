@@ -19,6 +19,7 @@ from runtime.flow import flow_of, rates
 from spec_schema.diagnostics import SpecError
 from specc import loading
 from specc.book import folder, manifest
+from specc.book.contents import gathered
 from specc.book.export import export_book
 from specc.book.loading import compile_book
 from specc.book.sources import Sources, sources_of
@@ -377,6 +378,7 @@ def test_the_command_says_what_it_made_and_what_it_doubts(
 
 GRID = "field:\n  grid: {over: [bearing], between: linear, file: rates.csv}\n"
 CODE = "field:\n  module: {call: spin:field}\n"
+SPIN = "def field(bearing, gain):\n    return {'bearing': -gain * half(np.sin(bearing))}\n"
 
 
 @pytest.mark.parametrize(
@@ -404,6 +406,30 @@ def test_what_lies_beside_a_spec_comes_along_and_makes_the_same_program(
 
     assert f"specs/{beside}" in first[1].names.values()
     assert again[0] == first[0]
+
+
+def test_what_code_imports_from_beside_it_comes_along(tmp_path: Path) -> None:
+    home = laid_down(tmp_path)
+    own = "field:\n  formula:\n    bearing: -gain * sin(bearing)\n"
+    (home / "face.yaml").write_text(FILES["face.yaml"].replace(own, CODE))
+    (home / "spin.py").write_text("import numpy as np\nfrom halves import half\n" + SPIN)
+    (home / "halves.py").write_text("def half(value):\n    return 0.5 * value\n")
+    (home / "other.py").write_text("nobody = 'imports this'\n")
+
+    files = compiled(home / ARCHITECTURE)[1].names.values()
+    assert {"specs/spin.py", "specs/halves.py"} <= set(files)
+    assert "specs/other.py" not in files
+
+
+def test_two_architectures_of_one_name_make_no_book(tmp_path: Path) -> None:
+    home = laid_down(tmp_path)
+    text = (home / ARCHITECTURE).read_text()
+    (home / "robots" / "again.yaml").write_text(text.replace("period: 50 ms", "period: 100 ms"))
+    robots = "  r: {architecture: robots/turner.yaml, at: [1 m, 1 m, 90 deg]}\n"
+    other = "  s: {architecture: robots/again.yaml, at: [2 m, 1 m, 90 deg]}\n"
+    (home / SCENARIO).write_text(FILES[SCENARIO].replace(robots, robots + other))
+    with pytest.raises(SpecError, match="V437"):
+        gathered(home / SCENARIO, quiet)
 
 
 def compiled(spec: Path) -> tuple[bytes, Sources]:

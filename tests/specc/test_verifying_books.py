@@ -1,6 +1,7 @@
 """Books beside recordings: which modules are done, which fail, and which lack data."""
 
 import json
+import math
 import re
 from dataclasses import replace
 from html import unescape
@@ -292,6 +293,35 @@ def test_of_several_modules_that_fit_the_files_name_decides(
     Path("specc.yaml").write_text(dedent("\n".join(snippet.splitlines()[:6])))
     main(["verify", str(book), "run.csv", "--only", "index"])
     assert "since 'run.csv' names it in specc.yaml" in capsys.readouterr().err
+
+
+def test_of_two_specs_of_one_name_each_module_is_judged_by_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = laid_down(tmp_path / "two")
+    lazy = FILES["face.yaml"].replace("-gain * sin(bearing)", "-0.5 * gain * sin(bearing)")
+    (folder / "lazy.yaml").write_text(lazy)
+    robot = FILES["robots/turner.yaml"].replace("name: turner", "name: idler")
+    (folder / "robots" / "idler.yaml").write_text(robot.replace("face.yaml", "lazy.yaml"))
+    first = "  r: {architecture: robots/turner.yaml, at: [1 m, 1 m, 90 deg]}\n"
+    second = "  s: {architecture: robots/idler.yaml, at: [2 m, 1 m, 90 deg]}\n"
+    (folder / SCENARIO).write_text(FILES[SCENARIO].replace(first, first + second))
+    export_book(folder / SCENARIO, folder / "book", quiet, with_pdf=False)
+    log = tmp_path / "face_1.csv"
+    times = np.arange(0.0, 20.0, 0.05)
+    lines = [f"{t:.2f},{2.0 * math.exp(-t):.6f},1.5" for t in times]
+    log.write_text("\n".join(["time,bearing,gain", *lines]) + "\n")
+
+    assert main(["verify", str(folder / "book"), str(log)]) == 2
+    told = capsys.readouterr().out
+    assert "V443" in told
+    assert "the names of face (specs/face.yaml) and face (specs/lazy.yaml)" in told
+
+    own = folder / "book" / "specs" / "lazy.yaml"
+    main(["verify", str(folder / "book"), str(log), "--spec", str(own), "--format", "json"])
+    told = json.loads(capsys.readouterr().out)
+    judged = [each for each in told["modules"] if each["recordings"]]
+    assert [each["architecture"] for each in judged] == ["idler"]
 
 
 def test_several_specs_are_refused(

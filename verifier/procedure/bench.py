@@ -54,10 +54,10 @@ def bench_test(arbiter: Arbiter, period: float) -> BenchTest | None:
         return None
     bench = _Bench(arbiter, period)
     rows, names = bench.pairs()
-    chosen = bench.chosen(np.repeat(rows, bench.ticks, axis=0))[bench.ticks - 1 :: bench.ticks]
+    rows = rows[bench.chosen_last(rows) >= 0]
     shown = [
         Shown(dict(zip(names, map(float, row), strict=True)), arbiter.choices[choice])
-        for row, choice in zip(rows, chosen, strict=True)
+        for row, choice in zip(rows, bench.chosen_last(rows), strict=True)
         if choice >= 0
     ]
     repeats, found = bench.rehearsed(rows)
@@ -101,6 +101,10 @@ class _Bench:
     def smooth(self) -> tuple[int, ...]:
         """Which reads are no discrete ones."""
         return tuple(i for i, read in enumerate(self.arbiter.reads) if not read.values)
+
+    def chosen_last(self, rows: Array) -> Integers:
+        """What it has chosen at the end of each row (N,), -1 for nothing."""
+        return self.chosen(np.repeat(rows, self.ticks, axis=0))[self.ticks - 1 :: self.ticks]
 
     def running(self, one: Arbiter) -> Decide:
         """A fresh one that decides."""

@@ -11,8 +11,8 @@ from specc.book.words.overview import overview_chapter
 from specc.book.words.required import scenario_chapter
 
 
-def chapters_of(contents: Contents, names: Names) -> tuple[Chapter, ...]:
-    """All chapters; the first one is the book's front page."""
+def chapters_of(contents: Contents, names: Names, *, with_pdf: bool) -> tuple[Chapter, ...]:
+    """All chapters; the first one is the book's front page, which names book.pdf if it is made."""
     found: list[Chapter] = [building_chapter(contents, names)]
     if contents.scenario is not None:
         found.append(scenario_chapter(contents, contents.scenario, names))
@@ -20,7 +20,7 @@ def chapters_of(contents: Contents, names: Names) -> tuple[Chapter, ...]:
         found.append(overview_chapter(of, names))
         nodes = sorted(of.nodes, key=lambda shown: shown.node.level)
         found += [_of_node(of, shown, names) for shown in nodes]
-    return (front_chapter(contents, tuple(found)), *found)
+    return (front_chapter(contents, tuple(found), with_pdf=with_pdf), *found)
 
 
 def _of_node(of: Drawn, shown: Shown, names: Names) -> Chapter:

@@ -9,9 +9,10 @@ from specc.figures.quantities import seconds
 from verifier.report.requirement_results import Outcome
 
 
-def front_chapter(contents: Contents, chapters: tuple[Chapter, ...]) -> Chapter:
+def front_chapter(contents: Contents, chapters: tuple[Chapter, ...], *, with_pdf: bool) -> Chapter:
     """The first page, with links to all others."""
     modules = sum(len(of.nodes) for of in contents.architectures)
+    files = Table(("file", "what it holds"), tuple(_files(contents, with_pdf=with_pdf)))
     return Chapter(
         "index",
         f"specifications of {'an architecture' if contents.scenario is None else 'a scenario'}",
@@ -21,7 +22,7 @@ def front_chapter(contents: Contents, chapters: tuple[Chapter, ...]) -> Chapter:
             Section("What this book is", tuple(_about(contents, modules))),
             Section("Contents", tuple(_contents(chapters))),
             *_result(contents),
-            Section("Files", (Table(("file", "what it holds"), tuple(_files(contents))),)),
+            Section("Files", (files,)),
             Section("How to read it", (Bullets(prose("reading")),)),
         ),
     )
@@ -67,9 +68,12 @@ def _result(contents: Contents) -> Iterator[Section]:
     )
 
 
-def _files(contents: Contents) -> Iterator[tuple[str, str]]:
+def _files(contents: Contents, *, with_pdf: bool) -> Iterator[tuple[str, str]]:
     yield ("[book.json](book.json)", "everything here that programs may want, with checksums")
-    yield ("`pages/`, [book.pdf](book.pdf)", "these pages; the same as one document")
+    if with_pdf:
+        yield ("`pages/`, [book.pdf](book.pdf)", "these pages; the same as one document")
+    else:
+        yield ("`pages/`", "these pages")
     yield ("`specs/`", "every spec, as its author wrote it: " + _specs(contents))
     name = contents.artifact_name
     yield (f"[{name}]({name})", "the compiled program, which specc runs and verifies against")

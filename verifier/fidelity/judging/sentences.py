@@ -27,7 +27,7 @@ GROWN = 3.0
 HOPELESS = 100.0
 """Where so many times the data were needed, more data is no advice."""
 LEAST_MORE = 1.5
-"""Data that left a verdict open are asked for this many times over at least: estimates are rough."""
+"""Data that left a verdict open are asked for so many times over, at least: estimates are rough."""
 
 
 def what_is_systematic() -> str:
