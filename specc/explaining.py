@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -30,6 +30,8 @@ from verifier.deciding.rulings import DRAWN
 from verifier.deciding.stretches import Stretch, stretches_of, whole_margins
 from verifier.traces.files.log import Progress
 from verifier.traces.read import ClockWish, read_trace
+
+NAME_ONE: Final = "name an arbiter's spec: --spec ARBITER.yaml"
 
 
 @final
@@ -87,7 +89,7 @@ def explain(
     arbiter = find_spec(trace, named, program_of).program
     if not isinstance(arbiter, Arbiter):
         message = f"'{arbiter.name}' is no arbiter: only what chooses has decisions to explain"
-        raise fault("V423", trace, message, "name an arbiter's spec: --spec ARBITER.yaml")
+        raise fault("V423", trace, message, NAME_ONE)
     read = read_trace(trace, reader_of(arbiter), clock, reading)
     decisions = decisions_of(arbiter, read)
     beside = Path(arbiter.source.file).parent
@@ -106,6 +108,11 @@ def _of_run(
     """The arbiters of the recording of a scenario."""
     robots = {robot.name: robot.architecture for robot in standard.robots}
     wanted = _arbiters_in(trace, robots, standard, nodes)
+    if not wanted:
+        message = (
+            f"'{standard.spec.name}' is no arbiter: only what chooses has decisions to explain"
+        )
+        raise fault("V423", trace, message, NAME_ONE)
     step = 0.0 if carried.document is None else carried.document.step
     log = open_run(trace, topics_of_nodes(robots), step, reading)
     records = records_of(log, robots)

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
+from runtime.program import Kind
 from specc.figures.line import draw_line
 from specc.figures.palettes import PALETTES
 from specc.figures.paper import axes_at, new_figure
 from specc.figures.portrait import draw_portrait
 from specc.figures.style_names import Style
 from specc.texts.portrait import portrait_summary
-from tests.verifier.topology_scenes import OSCILLATOR, line, plane
+from tests.verifier.topology_scenes import OSCILLATOR, behavior, line, plane, state
 from verifier.topology.portrait import Detail, portrait
 
 QUICK = Detail(plane=65, line=129, trajectories=0)
@@ -73,3 +74,12 @@ def test_footers_keep_the_names_of_states_as_they_are() -> None:
     lines = "\n".join(text.get_text() for text in figure.texts).splitlines()
     assert any(text.startswith("x' is zero") for text in lines)
     assert any(text.startswith("Proved of") for text in lines)
+
+
+def test_rounding_alone_goes_round_no_cycle() -> None:
+    """A table or a sum may leave 1e-16 of what is zero; round an angle that would come back."""
+    angle = state("x", -np.pi, np.pi, kind=Kind.PERIODIC)
+    turning = behavior("turning", (angle, state("y", -2.0, 2.0)), ("y 1e-16 add", "0"))
+    found = portrait(turning, ("x",), {"y": 0.0}, QUICK)
+    assert found.cycles == ()
+    assert "x' is zero throughout: every point is a fixed point" in found.notes

@@ -97,7 +97,8 @@ def portrait(
 def _assembled(program: Program, view: Slice, grid: Grid, detail: Detail) -> Portrait:
     """The portrait; of a field with modes, as if the one that is shown were never left."""
     points, completeness, remarks = find_fixed_points(view, grid, compare=detail.compared)
-    cycles, hints = _cycles(view, points, detail)
+    moves = len(completeness.still) < len(view.axes)
+    cycles, hints = _cycles(view, points, detail) if moves else ((), ())
     separatrices = find_separatrices(view, points, cycles) if detail.separatrices else ()
     lines = detail.nullclines and len(view.axes) == 2
     return Portrait(
