@@ -74,13 +74,14 @@ class Found:
     lists: of each draw one for each action, which takes it where no rule holds. Which is best is
     not told by what single decisions lose: an action that is nearly as good as the best, once, may
     lead to nothing if it is always taken. It takes a trial.
-    tables: all rules, of each draw. x: all lived places (D, n), within their ranges. good (D, A):
-    whether an action is as good as the best there.
+    tables: all rules, of each draw. x: all lived places (D, n), within their ranges. cost (D, A):
+    what an action loses there against the best one. good (D, A): whether it is as good as that.
     """
 
     lists: tuple[DecisionList, ...]
     tables: tuple[RuleTable, ...]
     x: Array
+    cost: Array
     good: Booleans
 
     def counted(self, rules: DecisionList) -> DecisionList:
@@ -129,7 +130,7 @@ def found_policy(
         lists += (
             listed(offer, x[some], cost[some], otherwise, most=most) for otherwise in range(actions)
         )
-    found = Found(tuple(lists), tuple(tables), x, good)
+    found = Found(tuple(lists), tuple(tables), x, cost, good)
     return replace(found, lists=tuple(map(found.counted, lists)))
 
 

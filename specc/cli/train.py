@@ -73,7 +73,7 @@ By: TypeAlias = Annotated[
 ]
 Episodes: TypeAlias = Annotated[
     int | None,
-    typer.Option("--episodes", "-n", min=1, help="To live, races included; default 3,600."),
+    typer.Option("--episodes", "-n", min=1, help="To live, races included; default 4,500."),
 ]
 HeldOut: TypeAlias = Annotated[
     int | None,

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from runtime.arrays import Array
+from runtime.arrays import Array, Integers
 from runtime.program import Unit
 from specc.explaining import Explained
 from specc.figures.decisions import tint
@@ -49,6 +49,8 @@ LINE_OF_NUMBERS: Final = 0.11
 """Inches that the number of a boundary takes."""
 NAME: Final = 0.24
 """Of the range of a quantity, for its name above it."""
+MOST_LIMITS: Final = 6
+"""Boundaries of a quantity that are drawn; of more, those that mattered most."""
 MARGIN: Final = 0.08
 """Of the range of a quantity, above and below it."""
 
@@ -62,6 +64,8 @@ def draw_strip(found: Explained, style: Style = Style.SCREEN) -> Figure:
     strips = 2 if differs else 1
     height = strips * (STRIP + GAP) + len(shown) * (ROW + GAP)
     small = []
+    if any(len(each.numbers) > MOST_LIMITS for each in shown):
+        small.append("Of many boundaries those are drawn that were crossed as the choice changed.")
     if left:
         names = ", ".join(infix(each.code) for each in left)
         small.append(f"Not drawn: {names}.")
@@ -163,7 +167,9 @@ def _draw_quantity(
     times = np.append(decisions.times[inside], span[1])
     values = course_of(arbiter, watched, decisions.register)[inside] / unit.scale
     values = np.append(values, values[-1:])
-    limits = np.array(watched.numbers) / unit.scale
+    limits = np.sort(np.array(watched.numbers)) / unit.scale
+    if limits.size > MOST_LIMITS:
+        limits = _crossed(limits, values, decisions.chosen[inside])
     for stretch in found.stretches:
         ground = tint(palette, stretch.chosen)
         axes.axvspan(stretch.start, stretch.end, color=ground, lw=0.0, zorder=0)
@@ -177,7 +183,7 @@ def _draw_quantity(
         return []
     for limit in limits:
         axes.axhline(limit, **edge, zorder=2)
-    for limit, at in zip(np.sort(limits), _apart(np.sort(limits), axes), strict=True):
+    for limit, at in zip(limits, _apart(limits, axes), strict=True):
         axes.text(
             1.006, at, number(float(limit)), transform=axes.get_yaxis_transform(),
             fontsize=6.5, color=palette.cycle, va="center",
@@ -186,13 +192,33 @@ def _draw_quantity(
     return [*entries, *([line_entry("a boundary of the rules", **edge)] if limits.size else [])]
 
 
+def _crossed(limits: Array, values: Array, chosen: Integers) -> Array:
+    """Of boundaries (k,), in order, those that were crossed most often as the choice changed.
+
+    values (D + 1,), of which the last is told twice. chosen (D,).
+    """
+    changed = np.flatnonzero(np.diff(chosen)) + 1
+    sides = np.sort(np.stack([values[changed - 1], values[changed]]), axis=0)  # (2, changes)
+    times = ((limits[:, None] > sides[0]) & (limits[:, None] <= sides[1])).sum(axis=1)
+    first = np.argsort(-times, kind="stable")[:MOST_LIMITS]
+    crossed: Array = limits[np.sort(first[times[first] > 0])]
+    return crossed
+
+
 def _apart(limits: Array, axes: Axes) -> Array:
-    """Where the numbers of boundaries (k,), in order, are written, so that none covers another."""
+    """Where the numbers of boundaries (k,), in order, are written, so that none covers another.
+
+    Each as near to its line as can be, none above the panel.
+    """
     low, high = axes.get_ylim()
     step = LINE_OF_NUMBERS / ROW * (high - low)
     places = limits.copy()
     for k in range(1, places.size):
         places[k] = max(places[k], places[k - 1] + step)
+    ceiling = high
+    for k in reversed(range(places.size)):
+        places[k] = min(places[k], ceiling)
+        ceiling = places[k] - step
     return places
 
 

@@ -1,13 +1,15 @@
-"""The lists that may be better than the best so far: what is learnt, and variations of the best."""
+"""The lists that may be better than the best so far: what is learnt, and lists like the best."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from lcs.arrays import Array
+from lcs.arrays import Array, Integers
 from lcs.policies.decision_list import DecisionList
-from lcs.policies.learner import Found, found_policy
+from lcs.policies.learner import Found, found_policy, offer_of
+from lcs.policies.mending import mended
 from lcs.policies.shortened import shortened
 from lcs.policies.steps import Steps
 from lcs.policies.variations import Variation
@@ -37,8 +39,31 @@ def challengers_of(
     chance = np.random.default_rng([settings.seed, number, VARYING])
     actions = len(trained_arbiter(scenario).choices)
     variation = Variation(found.lists, found.x, actions, settings.rules, chance)
-    varied = (variation.of(champion) for _ in range(settings.varied))
-    return (*found.lists, *(found.counted(shortened(rules, found.x)) for rules in varied))
+    like = [*_mended(champion, lived, found, settings)]
+    like += [variation.of(champion) for _ in range(settings.varied)]
+    return (*found.lists, *(found.counted(shortened(rules, found.x)) for rules in like))
+
+
+def _mended(
+    champion: DecisionList, lived: Steps, found: Found, settings: Settings
+) -> Iterator[DecisionList]:
+    """The champion with rules more, where its own decisions lose most by what is known now."""
+    own = own_places(champion, lived)
+    x, cost = found.x[own], found.cost[own]
+    count = settings.mended // 2
+    yield from mended(
+        champion, offer_of(found.tables[0]), x, cost, most=settings.rules, count=count
+    )
+
+
+def own_places(rules: DecisionList, lived: Steps) -> Integers:
+    """The steps (D,) of all episodes in which a list would have chosen the same throughout."""
+    same = rules.decide(lived.x) == lived.action
+    ends = np.flatnonzero(lived.last) + 1
+    starts = np.append(0, ends[:-1])
+    throughout = np.logical_and.reduceat(same, starts) if len(starts) else np.zeros(0, np.bool_)
+    own: Integers = np.flatnonzero(np.repeat(throughout, ends - starts))
+    return own
 
 
 def policy_of(lived: Steps, scenario: Scenario, settings: Settings, number: int) -> Found:

@@ -1,6 +1,6 @@
 """A race of lists: all are tried in a few worlds, and the better ones of them in more."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final, final
 
@@ -22,10 +22,9 @@ LEFT: Final = (6, 2)
 @final
 @dataclass(eq=False, slots=True)
 class Racer:
-    """A list, and its episodes so far; `is_champion` stays in the race to its end."""
+    """A list, and its episodes so far, a world after the other."""
 
     rules: DecisionList
-    is_champion: bool = False
     episodes: list[Episode] = field(default_factory=list)
 
     def beats(self, other: "Racer") -> bool:
@@ -40,6 +39,11 @@ class Racer:
             more -= [each.total for each in other.episodes]
         return bool(more.mean() > SURE * more.std() / np.sqrt(len(more)))
 
+    def would_live(self, episode: Episode, by: DecisionList) -> bool:
+        """Whether it would live an episode that another list lived: it decides alike all along."""
+        places = np.concatenate([episode.steps.x, episode.steps.after[-1:]])
+        return bool((self.rules.decide(places) == by.decide(places)).all())
+
     @property
     def standing(self) -> tuple[float, float]:
         """The share of worlds where all that is required was satisfied, then the mean reward."""
@@ -50,11 +54,24 @@ class Racer:
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Race:
-    """Who won, the best of the challengers, and all episodes that were lived in it."""
+    """How a race went: the best of the challengers, and who held the title, if anybody did.
 
-    winner: Racer
+    is_won: by the challenger. episodes: all that were lived in it, each once.
+    """
+
     challenger: Racer
+    holder: Racer | None
     episodes: tuple[Episode, ...]
+
+    @property
+    def is_won(self) -> bool:
+        """Whether the challenger surely beat the one that held the title."""
+        return self.holder is None or self.challenger.beats(self.holder)
+
+    @property
+    def winner(self) -> Racer:
+        """Who holds the title now."""
+        return self.challenger if self.holder is None or self.is_won else self.holder
 
 
 def raced(
@@ -67,31 +84,61 @@ def raced(
     """Who does best in all of the worlds; of equals who comes first.
 
     All that go on are tried in the same worlds, so that none wins by easier ones. The champion
-    stays where the best does not beat it: of many that are as good, one is lucky in any race.
+    keeps its title where the best does not beat it: of many that are as good, one is lucky in any
+    race. A challenger that decides as the champion did all along an episode would live the same,
+    to the bit, and is given that one.
+
+    Raises:
+        NoRoomError, UserCodeError, SpecError: as `Workers.lived`.
     """
-    racers = [Racer(rules) for rules in challengers]
-    if champion is not None:
-        racers.insert(0, Racer(champion, is_champion=True))
-    running, done = racers, 0
+    holder = None if champion is None else Racer(champion)
+    running = [Racer(rules) for rules in challengers]
+    lived: list[Episode] = []
+    done = 0
     for heat, share in enumerate(SHARES):
         upto = max(round(share * len(worlds)), 1)
         if heat:
-            running = list(_fastest(running, LEFT[heat - 1]))
-        tasks = [Task(each, racer.rules, 0.0) for racer in running for each in worlds[done:upto]]
-        what = f"trying {len(running)} lists in {upto - done} worlds:"
-        episodes = iter(live_through(workers, tasks, what, tell))
-        for racer in running:
-            racer.episodes += [next(episodes) for _ in range(upto - done)]
+            running = _fastest(running, LEFT[heat - 1])
+        if holder is not None:
+            lived += _heat([holder], None, worlds[done:upto], workers, tell)
+        lived += _heat(running, holder, worlds[done:upto], workers, tell)
         done = upto
-    every = tuple(each for racer in racers for each in racer.episodes)
-    challenging = [racer for racer in running if not racer.is_champion]
-    best = max(challenging, key=lambda racer: racer.standing)
-    is_beaten = champion is None or best.beats(racers[0])
-    return Race(best if is_beaten else racers[0], best, every)
+    best = max(running, key=lambda racer: racer.standing)
+    return Race(best, holder, tuple(lived))
 
 
-def _fastest(running: Sequence[Racer], left: int) -> Iterator[Racer]:
-    """The champion, and as many of the others, in the order in which they stand."""
-    others = [racer for racer in running if not racer.is_champion]
-    first = sorted(others, key=lambda racer: racer.standing, reverse=True)[:left]
-    return (racer for racer in running if racer.is_champion or racer in first)
+def _heat(
+    racers: Sequence[Racer],
+    holder: Racer | None,
+    worlds: Sequence[int],
+    workers: Workers,
+    tell: Progress,
+) -> list[Episode]:
+    """Let each of them have its episodes in some worlds more; those that had to be lived."""
+    done = len(racers[0].episodes)
+    known = [] if holder is None else holder.episodes[done:]
+    shared = [_shared(racer, holder, known, len(worlds)) for racer in racers]
+    tasks = [
+        Task(world, racer.rules, 0.0)
+        for racer, own in zip(racers, shared, strict=True)
+        for world, is_shared in zip(worlds, own, strict=True)
+        if not is_shared
+    ]
+    what = f"trying {len(racers)} lists in {len(worlds)} worlds:"
+    lived = live_through(workers, tasks, what, tell)
+    new = iter(lived)
+    for racer, own in zip(racers, shared, strict=True):
+        racer.episodes += [known[i] if same else next(new) for i, same in enumerate(own)]
+    return lived
+
+
+def _shared(racer: Racer, holder: Racer | None, known: Sequence[Episode], count: int) -> list[bool]:
+    """In which of so many worlds it would live what is known of the one that holds the title."""
+    if holder is None:
+        return [False] * count
+    return [racer.would_live(each, holder.rules) for each in known]
+
+
+def _fastest(running: Sequence[Racer], left: int) -> list[Racer]:
+    """As many of them, in the order in which they stand."""
+    return sorted(running, key=lambda racer: racer.standing, reverse=True)[:left]

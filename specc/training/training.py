@@ -25,7 +25,7 @@ AGAIN: Final = 2
 
 BEFORE: Final = 30
 """Decisions before a failure, at most, at which something else is tried."""
-LAST: Final = 3
+LAST: Final = 2
 """The last race has the worlds of so many others."""
 
 
@@ -102,7 +102,7 @@ def _one_more(
         tried=trial_of(race.winner.episodes),
         failed=_failures(worlds, race.winner.episodes),
         rules=race.challenger.rules,
-        is_new=not race.winner.is_champion,
+        is_new=race.is_won,
         raced=sum(len(each.steps) for each in race.episodes),
         took=Took(*np.diff(clock).tolist()),
     )
@@ -129,8 +129,12 @@ def best_of(
     """
     every, after = course.generations, len(course.generations)
     worlds = [each for i in range(LAST) for each in choosing_worlds(after + i, settings)]
-    winner = raced(None, [each.rules for each in every], worlds, workers, tell).winner
-    return next(each for each in every if each.rules is winner.rules), trial_of(winner.episodes)
+    champion = course.champion.rules
+    others = [each.rules for each in every if each.rules is not champion]
+    race = raced(champion if others else None, others or [champion], worlds, workers, tell)
+    contenders = [race.challenger, *([] if race.holder is None else [race.holder])]
+    best = max(contenders, key=lambda racer: racer.standing)
+    return next(each for each in every if each.rules is best.rules), trial_of(best.episodes)
 
 
 def choosing_worlds(number: int, settings: Settings) -> list[int]:

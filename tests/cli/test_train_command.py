@@ -18,7 +18,7 @@ from specc.training.settings import Settings
 from tests.specc.training_scenes import FILES, SMALL, equal, written_in
 
 RESUME = ["train", "--resume", "-o", "out"]
-MORE = Settings(episodes=44, first=3, each=3, varied=1, tried_in=3, rules=3, patience=9)
+MORE = Settings(episodes=44, first=3, each=3, mended=2, varied=1, tried_in=3, rules=3, patience=9)
 
 
 @pytest.fixture(autouse=True)

@@ -13,7 +13,7 @@ from runtime.run import run
 from runtime.scenario import Scenario
 from spec_schema.diagnostics import SpecError
 from specc.loading import load_scenario
-from specc.training.challengers import policy_of
+from specc.training.challengers import own_places, policy_of
 from specc.training.checkpoint import keep, taken_up
 from specc.training.episode import Task, lived, trained_arbiter
 from specc.training.folder import Begun, begin_in, scenario_in
@@ -189,6 +189,23 @@ def test_a_failure_that_is_lived_again_is_the_same_until_something_is_tried(
     assert len(before.steps) > 3
     assert (again.steps.x[:4] == before.steps.x[:4]).all()
     assert (again.steps.action[:3] == 0).all()
+
+
+def test_a_lists_own_places_are_of_the_episodes_that_it_would_have_lived(
+    pen: Scenario, whole: Course
+) -> None:
+    rules = whole.champion.rules
+    mine = [lived(pen, Task(world(For.CHOOSING, i), rules, 0.0)).steps for i in range(3)]
+    ends = [len(each) for each in mine]
+    theirs = [lived(pen, Task(world(For.CHOOSING, i), AtRandom(), 1.0)).steps for i in range(3)]
+    assert any((rules.decide(each.x) != each.action).any() for each in theirs)
+
+    parts = [theirs[0], mine[0], theirs[1], mine[1], theirs[2], mine[2]]
+    own = own_places(rules, joined(parts))
+    chosen = joined(parts).x[own]
+    assert (rules.decide(chosen) == joined(parts).action[own]).all()
+    assert set(range(len(theirs[0]), len(theirs[0]) + ends[0])) <= set(own.tolist())
+    assert len(own) >= sum(ends)
 
 
 def test_new_worlds_are_explored_where_nothing_failed() -> None:

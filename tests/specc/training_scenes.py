@@ -12,7 +12,7 @@ from specc.training.settings import Settings
 from specc.training.training import go_on
 from specc.training.workers import Workers
 
-SMALL: Final = Settings(episodes=20, first=6, each=6, varied=2, tried_in=3, rules=3)
+SMALL: Final = Settings(episodes=20, first=6, each=6, mended=2, varied=2, tried_in=3, rules=3)
 """Two generations."""
 
 FILES: Final = {
