@@ -196,3 +196,9 @@ class Architecture:
     arbiters: tuple[Arbiter, ...]
     order: tuple[int, ...]
     source: Origin
+
+    def spec_of(self, node: Node) -> Program | Arbiter | None:
+        """What a node runs; None of code."""
+        if node.behavior >= 0:
+            return self.programs[node.behavior]
+        return self.arbiters[node.arbiter] if node.arbiter >= 0 else None

@@ -106,12 +106,6 @@ class BookVerdict:
 def pieces_of(architecture: Architecture) -> tuple[Piece, ...]:
     """The modules of an architecture, in the order of its nodes."""
     return tuple(
-        Piece(Place(architecture.name, node.name), node, _spec(architecture, node))
+        Piece(Place(architecture.name, node.name), node, architecture.spec_of(node))
         for node in architecture.nodes
     )
-
-
-def _spec(architecture: Architecture, node: Node) -> Program | Arbiter | None:
-    if node.behavior >= 0:
-        return architecture.programs[node.behavior]
-    return architecture.arbiters[node.arbiter] if node.arbiter >= 0 else None

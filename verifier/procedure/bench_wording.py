@@ -1,7 +1,7 @@
 """The test procedure of an arbiter in words."""
 
 from verifier.procedure.bench_model import BenchTest, Biased, Shown
-from verifier.report.wording import exact, listed, number, percent, quantity, seconds
+from verifier.report.wording import exact, listed, number, often, percent, quantity, seconds
 
 
 def bench_sentences(test: BenchTest) -> tuple[str, ...]:
@@ -15,12 +15,12 @@ def bench_sentences(test: BenchTest) -> tuple[str, ...]:
 
 def how_sentence(test: BenchTest) -> str:
     """How long each is shown, how often, and what to log."""
-    times = {1: "once", 2: "twice"}.get(test.repeats, f"{test.repeats} times")
     names = listed([each.name for each in test.readings])
     return (
         f"show the arbiter these {len(test.shown)} sets of readings one after the other, each for"
-        f" {seconds(test.seconds)}, all of them {times} ({seconds(test.duration)} in all); log"
-        f" {names} as it read them and its choice, at {number(1.0 / test.period)} Hz"
+        f" {seconds(test.seconds)}, all of them {often(test.repeats)}"
+        f" ({seconds(test.duration)} in all); log {names} as it read them and its choice, at"
+        f" {number(1.0 / test.period)} Hz"
     )
 
 

@@ -56,6 +56,11 @@ class Signal:
     is_set: bool
     is_sensed: bool
 
+    @property
+    def is_moved(self) -> bool:
+        """Whether it is a quantity that things have to be moved for, from value to value."""
+        return self.is_sensed and not self.values
+
 
 @final
 @dataclass(frozen=True, slots=True)
@@ -87,6 +92,11 @@ class Planted:
     departure: float
     verdict: Verdict
     is_named: bool
+
+    @property
+    def is_caught(self) -> bool:
+        """Whether it fails, and by this variable."""
+        return self.verdict is Verdict.FAIL and self.is_named
 
 
 @final
@@ -124,7 +134,7 @@ class Rehearsal:
     @property
     def decides(self) -> bool:
         """Whether a faithful robot passes, and each robot that departs fails."""
-        caught = all(each.verdict is Verdict.FAIL and each.is_named for each in self.planted)
+        caught = all(each.is_caught for each in self.planted)
         return self.verdict is Verdict.PASS and caught
 
 

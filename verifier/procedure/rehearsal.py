@@ -85,7 +85,7 @@ def rehearsed(staging: Staging, names: Sequence[str]) -> tuple[int, Rehearsal]:
     planted = tuple(_planted(staging, name, repeats) for name in names)
     most = min(ENOUGH, MOST_RECORDINGS // len(staging.plans.start))
     while report.verdict is Verdict.PASS and not (
-        all(map(_is_caught, planted))
+        all(each.is_caught for each in planted)
         and all(way.count >= SWITCHES for way in _way_times(judgements))
         and _again(staging, names, repeats)
     ):
@@ -133,7 +133,7 @@ def _again(staging: Staging, names: Sequence[str], repeats: int) -> bool:
         report = _together(other, _judgements(other, other.near, range(repeats)))
         if report.verdict is not Verdict.PASS:
             return False
-        if not all(_is_caught(_planted(other, name, repeats)) for name in names):
+        if not all(_planted(other, name, repeats).is_caught for name in names):
             return False
     return True
 
@@ -145,10 +145,6 @@ def _repeats(repeats: int, report: Report, runs: int) -> int:
     factor = max((times_more(result) for result in short), default=0.0)
     wanted = repeats * min(max(SPARE * factor, 2.0), FASTEST)
     return int(min(np.ceil(wanted), most if short else min(most, ENOUGH)))
-
-
-def _is_caught(planted: Planted) -> bool:
-    return planted.verdict is Verdict.FAIL and planted.is_named
 
 
 def _together(staging: Staging, judgements: Sequence[Judgement]) -> Report:

@@ -43,18 +43,13 @@ def drive_phrase(procedure: Procedure, drive: Drive) -> str:
 def _stage(stage: Stage, standing: Mapping[str, float], signals: Mapping[str, Signal]) -> str:
     """`for 6 s with speed 0.2 m/s, bringing left from 0.4 to 1.2 m`."""
     changed = {n: v for n, v in stage.held.items() if standing.get(n) != v and n in signals}
-    held = [_at(signals[n], v) for n, v in changed.items() if not _moves(signals[n])]
+    held = [_at(signals[n], v) for n, v in changed.items() if not signals[n].is_moved]
     moved = [
-        f"{n} to {exact(v, signals[n].unit)}" for n, v in changed.items() if _moves(signals[n])
+        f"{n} to {exact(v, signals[n].unit)}" for n, v in changed.items() if signals[n].is_moved
     ]
     told = f"run {seconds(stage.seconds)}"
     told += f" with {listed(held)}" if held else ""
     return told + (f", bringing {listed(moved)} evenly" if moved else "")
-
-
-def _moves(signal: Signal) -> bool:
-    """Whether it is a quantity that things have to be moved for."""
-    return signal.is_sensed and not signal.values
 
 
 def _at(signal: Signal, value: float) -> str:

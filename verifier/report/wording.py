@@ -139,6 +139,11 @@ def date_of(stamp: float) -> datetime | None:
     return datetime.fromtimestamp(stamp, UTC) if YEAR < stamp < CENTURIES else None
 
 
+def often(times: int) -> str:
+    """`once`, `twice`, `3 times`."""
+    return {1: "once", 2: "twice"}.get(times, f"{times} times")
+
+
 def listed(names: list[str]) -> str:
     """Names in a sentence.
 

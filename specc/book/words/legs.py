@@ -28,7 +28,7 @@ class Leg:
 
 def legs_of(procedure: Procedure, drive: Drive) -> tuple[Leg, ...]:
     """The legs of a run; where nothing is changed, one goes on."""
-    moved = {each.name for each in procedure.signals if is_moved(each)}
+    moved = {each.name for each in procedure.signals if each.is_moved}
     now, time, found = dict(drive.start), 0.0, list[Leg]()
     for stage in drive.stages:
         begins = now | {n: v for n, v in stage.held.items() if n not in moved}
@@ -41,11 +41,6 @@ def legs_of(procedure: Procedure, drive: Drive) -> tuple[Leg, ...]:
             found.append(Leg(time, end, begins, ends))
         now, time = ends, end
     return tuple(found)
-
-
-def is_moved(signal: Signal) -> bool:
-    """Whether it is brought evenly from value to value."""
-    return signal.is_sensed and not signal.values
 
 
 def arranged(procedure: Procedure) -> tuple[Signal, ...]:

@@ -6,14 +6,14 @@ from runtime.program import Program
 from specc.book.chapters import Block, Bullets, Paragraph, Section, Table
 from specc.book.formulas import plain, written
 from specc.book.trials import Trial
-from specc.book.words.legs import GOES_ON, constant, given, is_moved, legs_table
+from specc.book.words.legs import GOES_ON, constant, given, legs_table
 from specc.book.words.source import conditions_of
 from verifier.procedure.bench_model import BenchTest
 from verifier.procedure.bench_wording import how_sentence
 from verifier.procedure.bench_wording import rehearsal_sentences as bench_rehearsal
 from verifier.procedure.model import Procedure
 from verifier.procedure.wording import log_sentence, rehearsal_sentences
-from verifier.report.wording import exact, listed, number, seconds
+from verifier.report.wording import exact, listed, number, often, seconds
 
 TITLE = "Test procedure"
 WORTH = "a faithful robot passes by them, and one that is off by two tolerances fails"
@@ -59,10 +59,9 @@ def _how_often(procedure: Procedure) -> str:
     """How many recordings, of how long."""
     count, repeats = len(procedure.drives), procedure.drives[0].repeats
     runs = "this run" if count == 1 else f"each of these {count} runs"
-    often = {1: "once", 2: "twice"}.get(repeats, f"{repeats} times")
     many = count * repeats
     recordings = "1 recording" if many == 1 else f"{many} recordings"
-    return f"Drive {runs} {often}: {recordings}, {seconds(procedure.seconds)} in all"
+    return f"Drive {runs} {often(repeats)}: {recordings}, {seconds(procedure.seconds)} in all"
 
 
 def _held(procedure: Procedure) -> str:
@@ -83,13 +82,13 @@ def _how_to(program: Program, procedure: Procedure) -> Iterator[str]:
         " do not allow it, take the nearest that they do. Begin to log once the robot moves: what"
         f" it waits for its first command counts as late.{goes_on}"
     )
-    moved = [f"`{s.name}`" for s in procedure.signals if is_moved(s) and s.name in changing]
+    moved = [f"`{s.name}`" for s in procedure.signals if s.is_moved and s.name in changing]
     if moved:
         yield (
             f"{listed(moved)}: readings may be fed to the behavior in place of its sensors'; log"
             " what it was given. An arrow: brought there evenly."
         )
-    other = [s.name for s in procedure.signals if is_moved(s) and s.name not in changing]
+    other = [s.name for s in procedure.signals if s.is_moved and s.name not in changing]
     if other:
         yield (
             f"{listed([f'`{n}`' for n in other])}: as it comes about while the robot moves; it"
