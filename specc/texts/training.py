@@ -7,9 +7,9 @@ from specc.texts.amounts import counted
 from specc.texts.arbiters import arbiter_record, arbiter_summary
 from specc.training.episode import training_of
 from specc.training.judging import CONFIDENCE, Judged
+from specc.training.last_race import LAST
 from specc.training.result import Trained
 from specc.training.speed import Shares, shares_of
-from specc.training.training import LAST
 from verifier.report.layout import INDENT, bullets, section, table, wrapped
 from verifier.report.wording import number
 
@@ -34,8 +34,8 @@ def training_record(trained: Trained) -> dict[str, Any]:
         "settings": asdict(begun.settings),
         "held_out": begun.held_out,
         "arbiter": arbiter_record(trained.arbiter),
-        "best": course.generations.index(trained.best) + 1,
-        "final": asdict(trained.final),
+        "best": course.generations.index(trained.kept.best) + 1,
+        "final": asdict(trained.kept.trial),
         "generations": [
             {
                 "episodes": each.episodes,
@@ -67,7 +67,7 @@ def _head(trained: Trained) -> str:
         wrapped(
             f"lived {lived}, in {counted(count, 'generation')}{_ending(trained)}; what is kept was "
             f"best in {counted(LAST * settings.tried_in, 'world')} more, with success in "
-            f"{trained.final.success:.0%} of them".replace("%", " %")
+            f"{trained.kept.trial.success:.0%} of them".replace("%", " %")
         )
     )
     return "\n".join(lines)
@@ -120,8 +120,9 @@ def _failures(trained: Trained) -> list[str]:
 
 
 def _compaction_record(trained: Trained) -> dict[str, Any]:
-    before, after = len(trained.table), len(trained.best.rules)
+    before, after = len(trained.table), len(trained.kept.rules)
     record: dict[str, Any] = {"rules_before": before, "rules": after}
+    record["given_up"] = trained.kept.given_up
     if trained.judged:
         few, votes = trained.judged[0].trial, trained.judged[1].trial
         record["reward_lost"] = votes.reward - few.reward

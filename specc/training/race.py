@@ -95,19 +95,19 @@ def raced(
     running = [Racer(rules) for rules in challengers]
     lived: list[Episode] = []
     done = 0
-    for heat, share in enumerate(SHARES):
+    for number, share in enumerate(SHARES):
         upto = max(round(share * len(worlds)), 1)
-        if heat:
-            running = _fastest(running, LEFT[heat - 1])
+        if number:
+            running = _fastest(running, LEFT[number - 1])
         if holder is not None:
-            lived += _heat([holder], None, worlds[done:upto], workers, tell)
-        lived += _heat(running, holder, worlds[done:upto], workers, tell)
+            lived += heat([holder], None, worlds[done:upto], workers, tell)
+        lived += heat(running, holder, worlds[done:upto], workers, tell)
         done = upto
     best = max(running, key=lambda racer: racer.standing)
     return Race(best, holder, tuple(lived))
 
 
-def _heat(
+def heat(
     racers: Sequence[Racer],
     holder: Racer | None,
     worlds: Sequence[int],

@@ -1,6 +1,6 @@
 """What came of a training: the arbiter with its rules, how it does, and what that took."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, final
 
@@ -10,6 +10,8 @@ from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.library import Library
 from compiler.findings import Findings
 from lcs.policies.decision_list import always, uncounted
+from lcs.policies.learner import Found
+from lcs.policies.shortened import shortened
 from lcs.policies.steps import joined
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
@@ -21,14 +23,14 @@ from spec_schema.load import Loaded, load, load_source
 from spec_schema.source import Source
 from specc.faults import fault
 from specc.training.challengers import policy_of
-from specc.training.course import Course, Generation, Trial
+from specc.training.course import Course, Generation
 from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
+from specc.training.last_race import Kept, last_race
 from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
-from specc.training.training import best_of
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
@@ -41,9 +43,9 @@ class Trained:
     """What came of a training.
 
     scenario: as it was begun with. source, edited: the arbiter's text, and that with its rules.
-    arbiter: compiled from the latter; warnings: on the way. course: all generations. best: that
-    whose rules these are; final: how these did in the last race. table: all rules that were learnt
-    in that generation, of the first draw. judged: these beside others, where any worlds were held
+    arbiter: compiled from the latter; warnings: on the way. course: all generations. kept: the
+    rules, and how they did in the last race. table: all rules that their generation learnt, in its
+    first draw. judged: these beside others, where any worlds were held
     out.
     """
 
@@ -54,8 +56,7 @@ class Trained:
     arbiter: Arbiter
     warnings: tuple[Diagnostic, ...]
     course: Course
-    best: Generation
-    final: Trial
+    kept: Kept
     table: RuleTable
     judged: tuple[Judged, ...]
     pace: Pace
@@ -83,9 +84,10 @@ def concluded(
     Raises:
         NoRoomError, UserCodeError, LearnerError, SpecError: as `go_on`.
     """
-    best, final = best_of(course, begun.settings, workers, tell)
+    kept = last_race(course, begun.settings, workers, tell)
     tell("learning once more what was best", 0, 1)
-    rules, table = best.rules, table_of(best, course, scenario, begun)
+    found = found_in(kept.best, course, scenario, begun)
+    rules, table = found.counted(shortened(kept.rules, found.x)), found.tables[0]
     before = trained_arbiter(scenario)
     beside = judged((rules, table), before, begun.held_out, workers, tell) if begun.held_out else ()
     edited = with_rules(loaded, before, begun.settings.learner, rules)
@@ -100,8 +102,7 @@ def concluded(
         arbiter=arbiter,
         warnings=warnings,
         course=course,
-        best=best,
-        final=final,
+        kept=replace(kept, rules=rules),
         table=table,
         judged=beside,
         pace=pace,
@@ -109,11 +110,11 @@ def concluded(
     )
 
 
-def table_of(best: Generation, course: Course, scenario: Scenario, begun: Begun) -> RuleTable:
-    """All rules that a generation learnt in its first draw, learnt again: they are not kept."""
+def found_in(best: Generation, course: Course, scenario: Scenario, begun: Begun) -> Found:
+    """What a generation learnt, learnt again: most of it is not kept."""
     number = course.generations.index(best)
     lived = joined(course.lived[: best.episodes])
-    return policy_of(lived, scenario, begun.settings, number).tables[0]
+    return policy_of(lived, scenario, begun.settings, number)
 
 
 def text_of(scenario: Scenario, learner: str) -> Loaded:

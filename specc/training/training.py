@@ -12,7 +12,7 @@ from lcs.arrays import Integers
 from lcs.policies.steps import joined
 from runtime.scenario import Scenario
 from specc.training.challengers import challengers_of
-from specc.training.course import Course, Failure, Generation, Took, Trial, trial_of
+from specc.training.course import Course, Failure, Generation, Took, trial_of
 from specc.training.episode import Episode, Task
 from specc.training.living import Progress, live_through
 from specc.training.race import raced
@@ -25,8 +25,6 @@ AGAIN: Final = 2
 
 BEFORE: Final = 30
 """Decisions before a failure, at most, at which something else is tried."""
-LAST: Final = 2
-"""The last race has the worlds of so many others."""
 
 
 @final
@@ -114,27 +112,6 @@ def _failures(worlds: Sequence[int], episodes: Sequence[Episode]) -> tuple[Failu
     """Those of the worlds where something that is required was not satisfied."""
     pairs = zip(worlds, episodes, strict=True)
     return tuple(Failure(seed, len(each.steps)) for seed, each in pairs if not each.succeeded)
-
-
-def best_of(
-    course: Course, settings: Settings, workers: Workers, tell: Progress
-) -> tuple[Generation, Trial]:
-    """The generation whose list is the best of all, and how it did in the last race.
-
-    That one is longer than those before, in worlds of its own, and who did not beat the best of
-    its time for sure runs again: it may well be better.
-
-    Raises:
-        NoRoomError, UserCodeError, SpecError: as `go_on`.
-    """
-    every, after = course.generations, len(course.generations)
-    worlds = [each for i in range(LAST) for each in choosing_worlds(after + i, settings)]
-    champion = course.champion.rules
-    others = [each.rules for each in every if each.rules is not champion]
-    race = raced(champion if others else None, others or [champion], worlds, workers, tell)
-    contenders = [race.challenger, *([] if race.holder is None else [race.holder])]
-    best = max(contenders, key=lambda racer: racer.standing)
-    return next(each for each in every if each.rules is best.rules), trial_of(best.episodes)
 
 
 def choosing_worlds(number: int, settings: Settings) -> list[int]:

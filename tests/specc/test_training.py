@@ -15,24 +15,15 @@ from spec_schema.diagnostics import SpecError
 from specc.loading import load_scenario
 from specc.training.challengers import own_places, policy_of
 from specc.training.checkpoint import keep, taken_up
+from specc.training.course import Course, Failure, Generation, Took, Trial
 from specc.training.episode import Task, lived, trained_arbiter
 from specc.training.folder import Begun, begin_in, scenario_in
 from specc.training.judging import AsItWas, judged
 from specc.training.pace import paced
-from specc.training.result import table_of, text_of
+from specc.training.result import found_in, text_of
 from specc.training.settings import Settings
 from specc.training.spelled import with_rules
-from specc.training.training import (
-    BEFORE,
-    AtRandom,
-    Course,
-    Failure,
-    Generation,
-    Took,
-    Trial,
-    choosing_worlds,
-    exploring_tasks,
-)
+from specc.training.training import BEFORE, AtRandom, choosing_worlds, exploring_tasks
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 from tests.specc.training_scenes import FILES, SMALL, equal, in_silence, pen_in, trained, written_in
@@ -120,7 +111,7 @@ def test_a_checkpoint_that_is_damaged_anywhere_is_refused(whole: Course, tmp_pat
 
 def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course) -> None:
     best = whole.champion
-    learnt = best.rules, table_of(best, whole, pen, Begun("", SMALL, 10))
+    learnt = best.rules, found_in(best, whole, pen, Begun("", SMALL, 10)).tables[0]
     with Workers(pen, 1) as workers:
         beside = judged(learnt, trained_arbiter(pen), 10, workers, in_silence)
 

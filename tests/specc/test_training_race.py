@@ -7,7 +7,10 @@ import pytest
 
 from lcs.policies.decision_list import DecisionList, always
 from runtime.scenario import Scenario
+from specc.training.course import Course, Generation, Took, Trial
+from specc.training.last_race import last_race
 from specc.training.race import LEFT, Racer, raced
+from specc.training.settings import Settings
 from specc.training.workers import Workers
 from tests.specc.training_scenes import in_silence, pen_in
 from verifier.report.requirement_results import Outcome
@@ -86,3 +89,24 @@ def test_who_decides_as_the_champion_is_given_its_episodes_and_they_are_what_it_
     assert len(race.episodes) == len(set(map(id, race.episodes))) < 2 * len(WORLDS)
     pairs = zip(race.challenger.episodes, alone.episodes, strict=True)
     assert all((a.steps.x == b.steps.x).all() and a.total == b.total for a, b in pairs)
+
+
+def test_the_best_of_all_generations_is_kept_without_rules_that_change_nothing(
+    pen: Scenario,
+) -> None:
+    took = Took(0.0, 0.0, 0.0)
+    one = Trial(0.0, 0.0, 0.0, 0)
+    good = careful(0.6).with_rule(0, GO, np.array([1.9]), np.array([np.inf]))
+    lists = careful(0.1), good, always(GO, 1)
+    every = tuple(
+        Generation(1, 1, one, one, (), rules, place == 0, 1, took)
+        for place, rules in enumerate(lists)
+    )
+    settings = Settings(tried_in=4)
+    with Workers(pen, 1) as workers:
+        kept = last_race(Course((), every), settings, workers, in_silence)
+
+    assert kept.best is every[1]
+    assert kept.rules.upper.tolist() == [[0.6]]
+    assert kept.given_up == 1
+    assert kept.trial.success == 1.0
