@@ -1,7 +1,7 @@
 """A policy from what was lived: what actions are worth, rules for the best ones, few of them."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, TypeAlias, final
 
 import numpy as np
@@ -71,7 +71,8 @@ class Voting:
 class Found:
     """Lists of few rules, and all the rules that they were chosen from.
 
-    lists: of each draw one for each action, which takes it where no rule holds. Which is best is
+    lists: of each draw one for each action, which takes it where no rule holds; how often rules are
+    right is not counted. Which is best is
     not told by what single decisions lose: an action that is nearly as good as the best, once, may
     lead to nothing if it is always taken. It takes a trial.
     tables: all rules, of each draw. x: all lived places (D, n), within their ranges. cost (D, A):
@@ -130,8 +131,7 @@ def found_policy(
         lists += (
             listed(offer, x[some], cost[some], otherwise, most=most) for otherwise in range(actions)
         )
-    found = Found(tuple(lists), tuple(tables), x, cost, good)
-    return replace(found, lists=tuple(map(found.counted, lists)))
+    return Found(tuple(lists), tuple(tables), x, cost, good)
 
 
 def drawn(chance: np.random.Generator, weight: Array, most: int) -> Integers:

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from lcs.arrays import Array
-from lcs.policies.decision_list import DecisionList, holds
+from lcs.arrays import Array, Booleans
+from lcs.policies.decision_list import DecisionList
 from lcs.rules.digits import shortest_between
 
 DIGITS: Final = 9
@@ -26,18 +26,26 @@ def shortened(rules: DecisionList, x: Array) -> DecisionList:
     beyond it, it is dropped.
     """
     decimals = [_decimals(column) for column in x.T]
-    lower, upper, left = (_rounded(each, decimals) for each in (rules.lower, rules.upper, x))
-    made = dataclasses.replace(rules, lower=lower, upper=upper)
+    lower, upper, columns = (_rounded(each, decimals) for each in (rules.lower, rules.upper, x))
+    made, left = dataclasses.replace(rules, lower=lower, upper=upper), columns.T.copy()
     for r in range(len(made)):
-        own = slice(r, r + 1)
-        for i in range(x.shape[1]):
-            others = np.arange(x.shape[1]) != i
-            within = holds(made.lower[own, others], made.upper[own, others], left[:, others])[0]
-            values, beside = left[within, i], 10.0 ** -decimals[i]
+        inside = np.array([_is_inside(made, r, i, values) for i, values in enumerate(left)])
+        outside = (~inside).sum(axis=0, dtype=np.int8)  # by how many bounds each is kept out
+        for i in range(len(left)):
+            values, beside = left[i][outside == ~inside[i]], 10.0 ** -decimals[i]
             made.lower[r, i] = _lower(made.lower[r, i], values[values < made.upper[r, i]], beside)
             made.upper[r, i] = _upper(made.upper[r, i], values[values >= made.lower[r, i]], beside)
-        left = left[~holds(made.lower[own], made.upper[own], left)[0]]
+            outside += inside[i]
+            inside[i] = _is_inside(made, r, i, left[i])
+            outside -= inside[i]
+        left = left[:, outside > 0]
     return made
+
+
+def _is_inside(rules: DecisionList, rule: int, i: int, values: Array) -> Booleans:
+    """Which values of an input (T,) the bounds of a rule let in."""
+    inside: Booleans = (values >= rules.lower[rule, i]) & (values < rules.upper[rule, i])
+    return inside
 
 
 def _decimals(values: Array) -> int:

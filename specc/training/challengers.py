@@ -28,20 +28,24 @@ def challengers_of(
     scenario: Scenario,
     settings: Settings,
     number: int,
-) -> tuple[DecisionList, ...]:
-    """The lists that may be better than the best so far: what is learnt now, and like the best.
+) -> Found:
+    """What is learnt now, with all lists that may be better than the best so far.
 
-    What is told of the rules of the latter, how often they were right, is of what is known now.
+    Those that are made of it come first, then the best so far with rules more where it loses most,
+    then the same changed at random.
+
+    Raises:
+        LearnerError: what is read, or rewarded, is not finite.
     """
     found = policy_of(lived, scenario, settings, number)
     if champion is None:
-        return found.lists
+        return found
     chance = np.random.default_rng([settings.seed, number, VARYING])
     actions = len(trained_arbiter(scenario).choices)
     variation = Variation(found.lists, found.x, actions, settings.rules, chance)
     like = [*_mended(champion, lived, found, settings)]
     like += [variation.of(champion) for _ in range(settings.varied)]
-    return (*found.lists, *(found.counted(shortened(rules, found.x)) for rules in like))
+    return replace(found, lists=(*found.lists, *(shortened(each, found.x) for each in like)))
 
 
 def _mended(

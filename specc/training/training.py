@@ -88,10 +88,10 @@ def _one_more(
     tell(f"learning{standing}", min(done_so_far, most), most)
     lived = (*course.lived, *(episode.steps for episode in episodes))
     champion = course.champion.rules if course.generations else None
-    challengers = challengers_of(joined(lived), champion, scenario, settings, number)
+    found = challengers_of(joined(lived), champion, scenario, settings, number)
     clock.append(perf_counter())
     worlds = choosing_worlds(number, settings)
-    race = raced(champion, challengers, worlds, workers, told)
+    race = raced(champion, found.lists, worlds, workers, told)
     clock.append(perf_counter())
     made = Generation(
         episodes=len(lived),
@@ -99,7 +99,7 @@ def _one_more(
         explored=trial_of(episodes),
         tried=trial_of(race.winner.episodes),
         failed=_failures(worlds, race.winner.episodes),
-        rules=race.challenger.rules,
+        rules=found.counted(race.challenger.rules),
         is_new=race.is_won,
         raced=sum(len(each.steps) for each in race.episodes),
         took=Took(*np.diff(clock).tolist()),
