@@ -11,7 +11,7 @@ from specc.portraying_arbiters import ArbiterPortrait, ArbiterSweep, FoundOfArbi
 from specc.texts.arbiters import rule_sentences, word_of
 from verifier.deciding.plane import Axis
 from verifier.deciding.rulings import NOTHING, Ruling
-from verifier.report.wording import exact, percent, seconds
+from verifier.report.wording import exact, percents, seconds
 
 TRACED = "Boundaries that are no lines are followed from point to point, a 96th of an axis apart"
 
@@ -42,7 +42,7 @@ def portrait_text(found: ArbiterPortrait) -> str:
     rows = [f"{arbiter.name} over {axes}" + (f", at {held}" if held else "")]
     if found.why:
         rows.append(f"  {found.why}")
-    shares = [percent(plane.share_of(k)) for k in range(len(plane.rulings))]
+    shares = percents([plane.share_of(k) for k in range(len(plane.rulings))])
     for ruling, share in zip(plane.rulings, shares, strict=True):
         rows.append(f"  {share:>5}  {ruling_phrase(arbiter, ruling)}")
     held_set = {c.name: plane.held.get(c.name, c.default) for c in arbiter.controls}

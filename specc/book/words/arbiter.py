@@ -31,6 +31,7 @@ from specc.figures.quantities import percent
 from specc.texts.arbiter_portraits import ruling_phrase
 from specc.texts.arbiters import rule_sentences, way_of
 from verifier.arbitration.judging import AGREED
+from verifier.report.wording import percents
 
 
 def arbiter_chapter(of: Drawn, shown: Shown, names: Names) -> Chapter:
@@ -144,10 +145,9 @@ def _decisions(arbiter: Arbiter, shown: Shown, made: Architecture, names: Names)
         yield Heading(f"Over {over}" + (f", where {each.title}" if each.title else ""))
         alt = f"what {arbiter.name} decides over {over}"
         yield Figure(names.portrait(made, shown.node, k), "", alt, PORTRAIT)
-        rows = tuple(
-            (ruling_phrase(arbiter, ruling), percent(plane.share_of(place)))
-            for place, ruling in enumerate(plane.rulings)
-        )
+        shares = percents([plane.share_of(place) for place in range(len(plane.rulings))])
+        told = [ruling_phrase(arbiter, ruling) for ruling in plane.rulings]
+        rows = tuple(zip(told, shares, strict=True))
         yield Table(("decides", "share of what is shown"), rows, (1,))
 
 
