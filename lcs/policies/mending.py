@@ -6,13 +6,18 @@ of which it never sees again. So the best one is gone over at its own.
 """
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
 from lcs.arrays import Array
 from lcs.policies.decision_list import DecisionList, holds
 from lcs.policies.listing import Offer
+from lcs.policies.simplifying import widened
 from lcs.policies.weighed import Weighed, weighed
+
+OF_WHAT_IT_SAVES: Final = 0.05
+"""A condition of a rule saves at least this share of what the rule does."""
 
 
 def mended(
@@ -40,20 +45,23 @@ def mended(
     for box in np.argsort(-best, kind="stable")[:count]:
         if best[box] > 0.0:
             place = int(saved[:, box].argmax())
-            yield _short(now.instead(_with(now.rules, offer, place, int(box))), most).rules
+            yield _short(_with(now, offer, place, int(box)), most).rules
     for k in range(count):
         place, box = divmod(int(saved.argmax()), len(offer.action))
         if saved[place, box] <= 0.0:
             return
-        now = _short(now.instead(_with(now.rules, offer, place, box)), most)
+        now = _short(_with(now, offer, place, box), most)
         saved = now.saved(offer.action, held)
         if k:
             yield now.rules
 
 
-def _with(rules: DecisionList, offer: Offer, place: int, box: int) -> DecisionList:
+def _with(now: Weighed, offer: Offer, place: int, box: int) -> Weighed:
+    """The list with one rule more, without those of its conditions that save next to nothing."""
     bounds = offer.lower[box], offer.upper[box]
-    return rules.with_rule(place, int(offer.action[box]), *bounds)
+    more = now.instead(now.rules.with_rule(place, int(offer.action[box]), *bounds))
+    saved = float(now.lost[0].sum() - more.lost[0].sum())
+    return widened(more, place, OF_WHAT_IT_SAVES * saved)
 
 
 def _short(now: Weighed, most: int) -> Weighed:

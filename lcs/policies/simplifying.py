@@ -44,7 +44,14 @@ def _without_rules(now: Weighed, least: float) -> Weighed:
 
 
 def _without_conditions(now: Weighed, least: float) -> Weighed:
-    for rule, i, side, _ in list(_conditions(now.rules)):
+    for rule in reversed(range(len(now.rules))):
+        now = widened(now, rule, least)
+    return now
+
+
+def widened(now: Weighed, rule: int, least: float) -> Weighed:
+    """The list without the conditions of one rule that save no more than `least`, each alone."""
+    for i, side, _ in list(_bounds(now.rules, rule)):
         wider = now.rules.with_bound(rule, i, side, -np.inf if side == "lower" else np.inf)
         if now.costs(wider, rule) <= least:
             now = now.instead(wider)
@@ -64,6 +71,12 @@ def _with_few_digits(now: Weighed, least: float) -> Weighed:
 def _conditions(rules: DecisionList) -> Iterator[tuple[int, int, str, float]]:
     """Rule, input, side and value of each bound, those of the last rule first."""
     for rule in reversed(range(len(rules))):
-        for side, bounds in (("lower", rules.lower), ("upper", rules.upper)):
-            for i in np.flatnonzero(np.isfinite(bounds[rule])):
-                yield rule, int(i), side, float(bounds[rule, i])
+        for i, side, value in _bounds(rules, rule):
+            yield rule, i, side, value
+
+
+def _bounds(rules: DecisionList, rule: int) -> Iterator[tuple[int, str, float]]:
+    """Input, side and value of each bound of a rule."""
+    for side, bounds in (("lower", rules.lower), ("upper", rules.upper)):
+        for i in np.flatnonzero(np.isfinite(bounds[rule])):
+            yield int(i), side, float(bounds[rule, i])

@@ -42,9 +42,16 @@ def test_a_mended_list_loses_less_where_it_was_mended(
     made = list(mended(rules, offer, x, cost, most=50, count=count))
     assert len(made) <= 2 * count - 1
     assert all(lost(each, x, cost) < lost(rules, x, cost) for each in made)
-    singles = [each for each in made if len(each) == len(rules) + 1]
-    losses = [lost(each, x, cost) for each in singles]
-    assert losses == sorted(losses)
+
+
+def test_a_rule_that_goes_in_asks_for_what_matters_alone() -> None:
+    chance = np.random.default_rng(2)
+    x = chance.random((2_000, 2))
+    cost = np.where(x[:, :1] < 0.3, [[1.0, 0.0]], [[0.0, 1.0]])
+    offer = Offer(np.array([1]), np.array([[-INF, 0.001]]), np.array([[0.3, 0.999]]))
+    (one,) = mended(always(0, 2), offer, x, cost, most=5, count=1)
+    assert one.lower.tolist() == [[-INF, -INF]]
+    assert one.upper.tolist() == [[0.3, INF]]
 
 
 @given(tasks())
