@@ -6,8 +6,8 @@ from Python, of any scenario with the same robot and goal (an arbiter that was t
 A world is left as soon as it is decided: at the lamp, touched, flat, or late. That this is what the
 scenario requires is tested (tests/specc/test_errand.py).
 Seeds 0 to 999 are for building and training; those from 1000 on are held out.
-Run once in seeds 1000 to 1099: rules reached the lamp in 69 (59 to 77 %), touched in 7, were flat
-in 16 and late in 8; chance reached it in 9, touched in 78 and was flat in 13.
+Run once in seeds 1000 to 1099: rules reached the lamp in 70 (60 to 78 %), touched in 6, were flat
+in 16 and late in 8; chance reached it in 9.
 """
 
 import argparse
