@@ -72,9 +72,8 @@ class Found:
     """Lists of few rules, and all the rules that they were chosen from.
 
     lists: of each draw one for each action, which takes it where no rule holds; how often rules are
-    right is not counted. Which is best is
-    not told by what single decisions lose: an action that is nearly as good as the best, once, may
-    lead to nothing if it is always taken. It takes a trial.
+    right is not counted. Which is best is not told by what single decisions lose: an action that is
+    nearly as good as the best, once, may lead to nothing if it is always taken. It takes a trial.
     tables: all rules, of each draw. x: all lived places (D, n), within their ranges. cost (D, A):
     what an action loses there against the best one. good (D, A): whether it is as good as that.
     """

@@ -29,6 +29,10 @@ class Offer:
     lower: Array
     upper: Array
 
+    def into(self, rules: DecisionList, place: int, box: int) -> DecisionList:
+        """The list with one of the boxes as a rule more, before the one at this place."""
+        return rules.with_rule(place, int(self.action[box]), self.lower[box], self.upper[box])
+
 
 def listed(offer: Offer, x: Array, cost: Array, otherwise: int, *, most: int) -> DecisionList:
     """The list of at most `most` rules that loses little; how often they are right is not counted.
@@ -48,8 +52,7 @@ def listed(offer: Offer, x: Array, cost: Array, otherwise: int, *, most: int) ->
         place, box = divmod(int(saved.argmax()), len(offer.action))
         if saved[place, box] <= least:
             break
-        bounds = offer.lower[box], offer.upper[box]
-        now = now.instead(now.rules.with_rule(place, int(offer.action[box]), *bounds))
+        now = now.instead(offer.into(now.rules, place, box))
     return simplified(now, least)
 
 

@@ -58,8 +58,7 @@ def mended(
 
 def _with(now: Weighed, offer: Offer, place: int, box: int) -> Weighed:
     """The list with one rule more, without those of its conditions that save next to nothing."""
-    bounds = offer.lower[box], offer.upper[box]
-    more = now.instead(now.rules.with_rule(place, int(offer.action[box]), *bounds))
+    more = now.instead(offer.into(now.rules, place, box))
     saved = float(now.lost[0].sum() - more.lost[0].sum())
     return widened(more, place, OF_WHAT_IT_SAVES * saved)
 

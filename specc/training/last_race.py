@@ -27,13 +27,17 @@ class Kept:
     """What is kept of a training.
 
     best: the generation whose list won the last race. rules: that list without what it does as well
-    without. trial: how these did in that race. given_up: how many rules.
+    without. trial: how these did in that race.
     """
 
     best: Generation
     rules: DecisionList
     trial: Trial
-    given_up: int
+
+    @property
+    def given_up(self) -> int:
+        """How many rules."""
+        return len(self.best.rules) - len(self.rules)
 
 
 def last_race(course: Course, settings: Settings, workers: Workers, tell: Progress) -> Kept:
@@ -54,8 +58,7 @@ def last_race(course: Course, settings: Settings, workers: Workers, tell: Progre
     best = max(contenders, key=lambda racer: racer.standing)
     few = _compacted(best, worlds, workers, tell)
     won = next(each for each in every if each.rules is best.rules)
-    given_up = len(best.rules) - len(few.rules)
-    return Kept(won, few.rules, trial_of(few.episodes), given_up)
+    return Kept(won, few.rules, trial_of(few.episodes))
 
 
 def _compacted(best: Racer, worlds: Sequence[int], workers: Workers, tell: Progress) -> Racer:
