@@ -29,9 +29,13 @@ def shortened(rules: DecisionList, x: Array) -> DecisionList:
     lower, upper, columns = (_rounded(each, decimals) for each in (rules.lower, rules.upper, x))
     made, left = dataclasses.replace(rules, lower=lower, upper=upper), columns.T.copy()
     for r in range(len(made)):
-        inside = np.array([_is_inside(made, r, i, values) for i, values in enumerate(left)])
-        outside = (~inside).sum(axis=0, dtype=np.int8)  # by how many bounds each is kept out
-        for i in range(len(left)):
+        is_bounded = np.isfinite(made.lower[r]) | np.isfinite(made.upper[r])
+        bounded: list[int] = np.flatnonzero(is_bounded).tolist()
+        inside = {i: _is_inside(made, r, i, left[i]) for i in bounded}
+        outside = np.zeros(left.shape[1], np.int8)  # by how many bounds each is kept out
+        for let_in in inside.values():
+            outside += ~let_in
+        for i in bounded:
             values, beside = left[i][outside == ~inside[i]], 10.0 ** -decimals[i]
             made.lower[r, i] = _lower(made.lower[r, i], values[values < made.upper[r, i]], beside)
             made.upper[r, i] = _upper(made.upper[r, i], values[values >= made.lower[r, i]], beside)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lcs.arrays import Array, Booleans, Integers
+from lcs.arrays import Array, Booleans, Indices, Integers
 from lcs.compiled import kernel, part
 from lcs.policies.kernels.trees import grow_tree, leaf_at, seedlings
 
@@ -53,14 +53,14 @@ def value(lived: Lived, then: Array, target: Array) -> None:
 
 
 @part
-def digest(own: Integers, leaves: Integers, target: Array, expected: Array) -> float:
+def digest(own: Integers, leaves: Indices, target: Array, expected: Array) -> float:
     """Each leaf expects (F, M) the mean of what its steps, `own`, led to; the largest change."""
     change = 0.0
     for f in range(expected.shape[0]):
         total, count = np.zeros(expected.shape[1]), np.zeros(expected.shape[1])
         for k in own:
-            total[leaves[k, f]] += target[k]
-            count[leaves[k, f]] += 1.0
+            total[leaves[f, k]] += target[k]
+            count[leaves[f, k]] += 1.0
         for leaf in range(count.size):
             if count[leaf] > 0.0:
                 mean = total[leaf] / count[leaf]
@@ -70,13 +70,13 @@ def digest(own: Integers, leaves: Integers, target: Array, expected: Array) -> f
 
 
 @part
-def means(leaves: Integers, expected: Array, worth: Array) -> None:
-    """What the trees expect together where they have these leaves (N, F), as (N,)."""
-    for k in range(worth.size):
-        total = 0.0
-        for f in range(leaves.shape[1]):
-            total += expected[f, leaves[k, f]]
-        worth[k] = total / leaves.shape[1]
+def means(leaves: Indices, expected: Array, worth: Array) -> None:
+    """What the trees expect together where they have these leaves (F, N), as (N,)."""
+    worth[:] = 0.0
+    for f in range(len(leaves)):
+        for k in range(worth.size):
+            worth[k] += expected[f, leaves[f, k]]
+    worth /= len(leaves)
 
 
 @part
@@ -84,10 +84,10 @@ def grow_all(
     lived: Lived,
     numbers: Numbers,
     target: Array,
-    leaves: tuple[Integers, Integers],
+    leaves: tuple[Indices, Indices],
     chance: np.random.Generator,
 ) -> None:
-    """New trees for what each step led to; which leaves hold x and after, (A, N, F) each."""
+    """New trees for what each step led to; which leaves hold x and after, (A, F, N) each."""
     here, there = leaves
     for a in range(numbers.actions):
         own = np.flatnonzero(lived.action == a)
@@ -97,15 +97,15 @@ def grow_all(
             if own.size:
                 grow_tree(trees, f, x, led_to, numbers.fed, chance)
             for k in range(target.size):
-                here[a, k, f] = leaf_at(trees, f, lived.x[k])
-                there[a, k, f] = leaf_at(trees, f, lived.after[k])
+                here[a, f, k] = leaf_at(trees, f, lived.x[k])
+                there[a, f, k] = leaf_at(trees, f, lived.after[k])
 
 
 @part
 def settle(
     lived: Lived,
     target: Array,
-    leaves: tuple[Integers, Integers],
+    leaves: tuple[Indices, Indices],
     expected: Array,
 ) -> None:
     """Let what leaves expect (A, F, M), and what steps led to, agree.
@@ -136,7 +136,7 @@ def fitted(lived: Lived, numbers: Numbers, chance: np.random.Generator) -> Array
     target = lived.reward.copy()
     worth = np.full((numbers.actions, target.size), -np.inf)
     expected = np.zeros((numbers.actions, numbers.families, 2 * (target.size // numbers.fed) + 3))
-    here = np.zeros((numbers.actions, target.size, numbers.families), np.int64)
+    here = np.zeros((numbers.actions, numbers.families, target.size), np.int32)
     leaves = here, np.zeros_like(here)
     for _ in range(numbers.generations):
         grow_all(lived, numbers, target, leaves, chance)
