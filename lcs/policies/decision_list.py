@@ -34,6 +34,11 @@ class DecisionList:
         """How many rules, `otherwise` not among them."""
         return len(self.action)
 
+    @property
+    def conditions(self) -> int:
+        """How many bounds its rules have."""
+        return int(np.isfinite(self.lower).sum() + np.isfinite(self.upper).sum())
+
     def decide(self, inputs: npt.ArrayLike) -> Integers:
         """The action at each of the inputs (T, n), as (T,).
 

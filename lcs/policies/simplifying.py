@@ -11,16 +11,17 @@ from lcs.policies.weighed import Weighed
 OF_A_RULE: Final = 0.2
 """A condition saves at least this share of what a rule has to save."""
 OF_A_DIGIT: Final = 0.02
-"""And one more digit of a bound this share."""
+"""And one more digit of a bound this share, as a rule."""
 MOST_DIGITS: Final = 3
 """Decimals that are tried."""
 PASSES: Final = 3
 
 
-def simplified(before: Weighed, least: float) -> DecisionList:
+def simplified(before: Weighed, least: float, *, of_a_digit: float = OF_A_DIGIT) -> DecisionList:
     """The list without what saves too little.
 
-    least: what a rule has to save, in the unit of cost, summed up over the examples.
+    least: what a rule has to save, in the unit of cost, summed up over the examples. of_a_digit:
+    what one more digit of a bound has to, as a share of that.
     """
     now = before
     for _ in range(PASSES):
@@ -28,12 +29,11 @@ def simplified(before: Weighed, least: float) -> DecisionList:
         now = _without_conditions(_without_rules(now, least), OF_A_RULE * least)
         if _size(now.rules) == size:
             break
-    return _with_few_digits(now, OF_A_DIGIT * least).rules
+    return _with_few_digits(now, of_a_digit * least).rules
 
 
 def _size(rules: DecisionList) -> tuple[int, int]:
-    conditions = np.isfinite(rules.lower).sum() + np.isfinite(rules.upper).sum()
-    return len(rules), int(conditions)
+    return len(rules), rules.conditions
 
 
 def _without_rules(now: Weighed, least: float) -> Weighed:

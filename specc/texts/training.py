@@ -11,7 +11,7 @@ from specc.training.last_race import LAST
 from specc.training.result import Trained
 from specc.training.speed import Shares, shares_of
 from verifier.report.layout import INDENT, bullets, section, table, wrapped
-from verifier.report.wording import number
+from verifier.report.wording import number, percent
 
 FEW: Final = 5
 """So many seeds of failures are told; the record has all."""
@@ -34,7 +34,7 @@ def training_record(trained: Trained) -> dict[str, Any]:
         "settings": asdict(begun.settings),
         "held_out": begun.held_out,
         "arbiter": arbiter_record(trained.arbiter),
-        "best": course.generations.index(trained.kept.best) + 1,
+        "best": course.generations.index(trained.best) + 1,
         "final": asdict(trained.kept.trial),
         "generations": [
             {
@@ -61,16 +61,23 @@ def _head(trained: Trained) -> str:
     settings, course = trained.begun.settings, trained.course
     trains = training_of(trained.scenario).arbiter
     last, count = course.generations[-1], len(course.generations)
-    lived = f"{counted(course.episodes, 'episode')}, {last.decisions + last.raced:,} decisions"
-    lines = [f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"]
-    lines.append(
-        wrapped(
-            f"lived {lived}, in {counted(count, 'generation')}{_ending(trained)}; what is kept was "
-            f"best in {counted(LAST * settings.tried_in, 'world')} more, with success in "
-            f"{trained.kept.trial.success:.0%} of them".replace("%", " %")
-        )
+    steps = f"{counted(course.episodes, 'episode')}, {last.decisions + last.raced:,} decisions"
+    lived = f"lived {steps}, in {counted(count, 'generation')}{_ending(trained)}"
+    worlds = counted(LAST * settings.tried_in, "world")
+    best = f"the best list of all ran in {worlds} more, and was made plainer there"
+    head = f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"
+    return "\n".join([head, wrapped(lived), wrapped(f"{best}: {_plainer(trained)}")])
+
+
+def _plainer(trained: Trained) -> str:
+    """What was given up of the best list, and what that cost where it was tried."""
+    was, now, kept = trained.best.rules, trained.kept.rules, trained.kept
+    few = f"{counted(len(now), 'rule')} with {counted(now.conditions, 'condition')}"
+    return (
+        f"{few} instead of {len(was)} with {was.conditions}, "
+        f"success {percent(kept.trial.success)} instead of {percent(kept.before.success)}, "
+        f"reward {number(kept.trial.reward)} instead of {number(kept.before.reward)}"
     )
-    return "\n".join(lines)
 
 
 def _ending(trained: Trained) -> str:
@@ -122,7 +129,13 @@ def _failures(trained: Trained) -> list[str]:
 def _compaction_record(trained: Trained) -> dict[str, Any]:
     before, after = len(trained.table), len(trained.kept.rules)
     record: dict[str, Any] = {"rules_before": before, "rules": after}
-    record["given_up"] = trained.kept.given_up
+    was, kept = trained.best.rules, trained.kept
+    record["plainer"] = {
+        "rules": [len(was), len(kept.rules)],
+        "conditions": [was.conditions, kept.rules.conditions],
+        "success": [kept.before.success, kept.trial.success],
+        "reward": [kept.before.reward, kept.trial.reward],
+    }
     if trained.judged:
         few, votes = trained.judged[0].trial, trained.judged[1].trial
         record["reward_lost"] = votes.reward - few.reward

@@ -69,7 +69,7 @@ def judged(
     workers: Workers,
     tell: Progress,
 ) -> tuple[Judged, ...]:
-    """What was learnt, all rules learnt in its generation, the arbiter as it was, and chance.
+    """What was learnt, all rules learnt, the arbiter as it was, and chance.
 
     learnt: the list, and these rules. arbiter: before training. worlds: how
     many, the same for all.
@@ -104,7 +104,7 @@ def _beside(
 ) -> Iterator[tuple[str, int | None, Policy, float]]:
     """What is judged: its name, how many rules it has, its policy, and how much it tries."""
     yield "what was learnt", len(rules), rules, 0.0
-    yield "all rules learnt then, by their vote", len(table), Voting(table, rules.otherwise), 0.0
+    yield "all rules learnt, by their vote", len(table), Voting(table, rules.otherwise), 0.0
     if len(arbiter.rules) > 1:  # the last one always holds
         yield "the arbiter as it was", len(arbiter.rules) - 1, AsItWas(arbiter), 0.0
     yield "choices at random", None, AtRandom(), 1.0

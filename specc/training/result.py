@@ -10,8 +10,6 @@ from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.library import Library
 from compiler.findings import Findings
 from lcs.policies.decision_list import always, uncounted
-from lcs.policies.learner import Found
-from lcs.policies.shortened import shortened
 from lcs.policies.steps import joined
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
@@ -23,11 +21,12 @@ from spec_schema.load import Loaded, load, load_source
 from spec_schema.source import Source
 from specc.faults import fault
 from specc.training.challengers import policy_of
+from specc.training.compaction import Compacted, compacted
 from specc.training.course import Course, Generation
 from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
-from specc.training.last_race import Kept, last_race
+from specc.training.last_race import last_race
 from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
@@ -43,10 +42,10 @@ class Trained:
     """What came of a training.
 
     scenario: as it was begun with. source, edited: the arbiter's text, and that with its rules.
-    arbiter: compiled from the latter; warnings: on the way. course: all generations. kept: the
-    rules, and how they did in the last race. table: all rules that their generation learnt, in its
-    first draw. judged: these beside others, where any worlds were held
-    out.
+    arbiter: compiled from the latter; warnings: on the way. course: all generations. best: the one
+    whose list won the last race. kept: the rules that were made of that list. table: all rules that
+    are learnt from everything, in the first draw. judged: these beside others, where any worlds
+    were held out.
     """
 
     begun: Begun
@@ -56,7 +55,8 @@ class Trained:
     arbiter: Arbiter
     warnings: tuple[Diagnostic, ...]
     course: Course
-    kept: Kept
+    best: Generation
+    kept: Compacted
     table: RuleTable
     judged: tuple[Judged, ...]
     pace: Pace
@@ -84,10 +84,12 @@ def concluded(
     Raises:
         NoRoomError, UserCodeError, LearnerError, SpecError: as `go_on`.
     """
-    kept = last_race(course, begun.settings, workers, tell)
-    tell("learning once more what was best", 0, 1)
-    found = found_in(kept.best, course, scenario, begun)
-    rules, table = found.counted(shortened(kept.rules, found.x)), found.tables[0]
+    race = last_race(course, begun.settings, workers, tell)
+    tell("learning from everything", 0, 1)
+    lived = joined((*course.lived, *(each.steps for each in race.winner.episodes)))
+    found = policy_of(lived, scenario, begun.settings, len(course.generations))
+    kept = compacted(race, found, workers, tell)
+    rules, table = found.counted(kept.rules), found.tables[0]
     before = trained_arbiter(scenario)
     beside = judged((rules, table), before, begun.held_out, workers, tell) if begun.held_out else ()
     edited = with_rules(loaded, before, begun.settings.learner, rules)
@@ -102,19 +104,13 @@ def concluded(
         arbiter=arbiter,
         warnings=warnings,
         course=course,
+        best=race.best,
         kept=replace(kept, rules=rules),
         table=table,
         judged=beside,
         pace=pace,
         jobs=workers.processes,
     )
-
-
-def found_in(best: Generation, course: Course, scenario: Scenario, begun: Begun) -> Found:
-    """What a generation learnt, learnt again: most of it is not kept."""
-    number = course.generations.index(best)
-    lived = joined(course.lived[: best.episodes])
-    return policy_of(lived, scenario, begun.settings, number)
 
 
 def text_of(scenario: Scenario, learner: str) -> Loaded:

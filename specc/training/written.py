@@ -65,7 +65,7 @@ def _curves(trained: Trained, style: Style) -> Picture:
         tried_success=np.array([each.tried.success for each in every]),
         low=low,
         high=high,
-        best=every.index(trained.kept.best),
+        best=every.index(trained.best),
         final=(trained.kept.trial.reward, trained.kept.trial.success),
         worlds=settings.tried_in,
     )

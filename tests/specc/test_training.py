@@ -20,7 +20,7 @@ from specc.training.episode import Task, lived, trained_arbiter
 from specc.training.folder import Begun, begin_in, scenario_in
 from specc.training.judging import AsItWas, judged
 from specc.training.pace import paced
-from specc.training.result import found_in, text_of
+from specc.training.result import text_of
 from specc.training.settings import Settings
 from specc.training.spelled import with_rules
 from specc.training.training import BEFORE, AtRandom, choosing_worlds, exploring_tasks
@@ -110,14 +110,13 @@ def test_a_checkpoint_that_is_damaged_anywhere_is_refused(whole: Course, tmp_pat
 
 
 def test_what_was_learnt_is_worth_more_than_chance(pen: Scenario, whole: Course) -> None:
-    best = whole.champion
-    learnt = best.rules, found_in(best, whole, pen, Begun("", SMALL, 10)).tables[0]
+    learnt = whole.champion.rules, policy_of(joined(whole.lived), pen, SMALL, 2).tables[0]
     with Workers(pen, 1) as workers:
         beside = judged(learnt, trained_arbiter(pen), 10, workers, in_silence)
 
     assert [each.what for each in beside] == [
         "what was learnt",
-        "all rules learnt then, by their vote",
+        "all rules learnt, by their vote",
         "choices at random",
     ]
     assert beside[0].trial.reward > beside[2].trial.reward + 5.0
