@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Final, TypeAlias, final
 
 import typer
 
-from specc.cli.console import print_json, print_text, progress_bar, say, show_diagnostics
+from specc.cli.console import (
+    print_json,
+    print_text,
+    progress_bar,
+    say,
+    show_diagnostics,
+    shown_bar,
+)
 from specc.cli.options import Format, FormatOption
 from specc.cli.portrait import StyleOption
 from specc.cli.status import Status
@@ -217,6 +224,7 @@ def _learner(scenario: "Scenario") -> str:
 
 def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) -> Status:
     from specc.scenarios.failures import told_failures
+    from specc.texts.training import generation_text
     from specc.training.folder import course_in, keep_in
     from specc.training.result import concluded
     from specc.training.training import go_on
@@ -230,6 +238,8 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
         nonlocal course
         keep_in(given.folder, now)
         course = now
+        with bar.aside():
+            say(generation_text(now, begun.settings.tried_in))
 
     try:
         with (
@@ -237,10 +247,10 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
             told_unlearnable(scenario),
             Workers(scenario, given.jobs) as workers,
         ):
-            with progress_bar(scenario.name) as bar:
-                course = go_on(course, scenario, begun.settings, workers, bar, keep)
-            with progress_bar(scenario.name) as bar:
-                trained = concluded(begun, scenario, text, course, workers, bar)
+            with shown_bar(scenario.name) as bar:
+                course = go_on(course, scenario, begun.settings, workers, bar.advance, keep)
+            with progress_bar(scenario.name) as tell:
+                trained = concluded(begun, scenario, text, course, workers, tell)
     except KeyboardInterrupt:
         return _stopped(begun, course, given.folder)
     _tell(trained, given.form)

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from specc.texts.amounts import counted
 from specc.texts.arbiters import arbiter_record, arbiter_summary
+from specc.training.course import Course
 from specc.training.episode import training_of
 from specc.training.judging import CONFIDENCE, Judged
 from specc.training.last_race import LAST
@@ -24,6 +25,19 @@ def training_text(trained: Trained) -> str:
     """What was learnt, how well it does beside others, what it says, and what it took."""
     parts = [_head(trained), _judged_text(trained), arbiter_summary(trained.arbiter)]
     return "\n\n".join(part for part in (*parts, _speed_text(trained)) if part)
+
+
+def generation_text(course: Course, worlds: int) -> str:
+    """How the last generation went, in a line: its race was in so many worlds."""
+    last = course.generations[-1]
+    who = "a new list" if last.is_new else "the same list"
+    took = last.took.exploring + last.took.learning + last.took.trying
+    return (
+        f"generation {len(course.generations)}: {who} is best, with success in "
+        f"{percent(last.tried.success)} of {counted(worlds, 'world')} and reward "
+        f"{number(last.tried.reward)}; {counted(course.episodes, 'episode')} so far, "
+        f"{took:,.0f} s for these"
+    )
 
 
 def training_record(trained: Trained) -> dict[str, Any]:
@@ -64,7 +78,7 @@ def _head(trained: Trained) -> str:
     steps = f"{counted(course.episodes, 'episode')}, {last.decisions + last.raced:,} decisions"
     lived = f"lived {steps}, in {counted(count, 'generation')}{_ending(trained)}"
     worlds = counted(LAST * settings.tried_in, "world")
-    best = f"the best list of all ran in {worlds} more, and was made plainer there"
+    best = f"the best list of all ran in {worlds} more, to be made plainer"
     head = f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"
     return "\n".join([head, wrapped(lived), wrapped(f"{best}: {_plainer(trained)}")])
 
@@ -72,6 +86,8 @@ def _head(trained: Trained) -> str:
 def _plainer(trained: Trained) -> str:
     """What was given up of the best list, and what that cost where it was tried."""
     was, now, kept = trained.best.rules, trained.kept.rules, trained.kept
+    if (len(was), was.conditions) == (len(now), now.conditions):
+        return "nothing could be given up"
     few = f"{counted(len(now), 'rule')} with {counted(now.conditions, 'condition')}"
     return (
         f"{few} instead of {len(was)} with {was.conditions}, "

@@ -52,6 +52,7 @@ def test_what_was_learnt_is_left_told_and_written(capsys: pytest.CaptureFixture[
         "the world alone ",
     ):
         assert words in told.out
+    assert "generation 2: " in told.err
     assert "wrote choose.yaml, summary.txt, summary.json, curves.svg into out" in told.err
     assert (out / "curves.svg").read_text().startswith("<?xml")
     record = json.loads((out / "summary.json").read_text())
