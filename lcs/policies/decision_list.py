@@ -1,5 +1,6 @@
 """A decision list: boxes in an order; the first that holds says what is done (Rivest 1987)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final, final
 
@@ -38,6 +39,19 @@ class DecisionList:
     def conditions(self) -> int:
         """How many bounds its rules have."""
         return int(np.isfinite(self.lower).sum() + np.isfinite(self.upper).sum())
+
+    def bounds_of(self, rule: int) -> Iterator[tuple[int, str, float]]:
+        """Input, side and value of each bound of a rule."""
+        for side in ("lower", "upper"):
+            values = getattr(self, side)[rule]
+            for i in np.flatnonzero(np.isfinite(values)):
+                yield int(i), side, float(values[i])
+
+    def bounds(self) -> Iterator[tuple[int, int, str, float]]:
+        """Rule, input, side and value of each bound, those of the last rule first."""
+        for rule in reversed(range(len(self))):
+            for i, side, value in self.bounds_of(rule):
+                yield rule, i, side, value
 
     def decide(self, inputs: npt.ArrayLike) -> Integers:
         """The action at each of the inputs (T, n), as (T,).

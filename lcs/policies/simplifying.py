@@ -1,6 +1,5 @@
 """A list made simpler: rules, conditions and digits go that save next to nothing."""
 
-from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -11,17 +10,16 @@ from lcs.policies.weighed import Weighed
 OF_A_RULE: Final = 0.2
 """A condition saves at least this share of what a rule has to save."""
 OF_A_DIGIT: Final = 0.02
-"""And one more digit of a bound this share, as a rule."""
+"""And one more digit of a bound this share."""
 MOST_DIGITS: Final = 3
 """Decimals that are tried."""
 PASSES: Final = 3
 
 
-def simplified(before: Weighed, least: float, *, of_a_digit: float = OF_A_DIGIT) -> DecisionList:
+def simplified(before: Weighed, least: float) -> DecisionList:
     """The list without what saves too little.
 
-    least: what a rule has to save, in the unit of cost, summed up over the examples. of_a_digit:
-    what one more digit of a bound has to, as a share of that.
+    least: what a rule has to save, in the unit of cost, summed up over the examples.
     """
     now = before
     for _ in range(PASSES):
@@ -29,7 +27,7 @@ def simplified(before: Weighed, least: float, *, of_a_digit: float = OF_A_DIGIT)
         now = _without_conditions(_without_rules(now, least), OF_A_RULE * least)
         if _size(now.rules) == size:
             break
-    return _with_few_digits(now, of_a_digit * least).rules
+    return _with_few_digits(now, OF_A_DIGIT * least).rules
 
 
 def _size(rules: DecisionList) -> tuple[int, int]:
@@ -51,7 +49,7 @@ def _without_conditions(now: Weighed, least: float) -> Weighed:
 
 def widened(now: Weighed, rule: int, least: float) -> Weighed:
     """The list without the conditions of one rule that save no more than `least`, each alone."""
-    for i, side, _ in list(_bounds(now.rules, rule)):
+    for i, side, _ in list(now.rules.bounds_of(rule)):
         wider = now.rules.with_bound(rule, i, side, -np.inf if side == "lower" else np.inf)
         if now.costs(wider, rule) <= least:
             now = now.instead(wider)
@@ -59,24 +57,10 @@ def widened(now: Weighed, rule: int, least: float) -> Weighed:
 
 
 def _with_few_digits(now: Weighed, least: float) -> Weighed:
-    for rule, i, side, value in list(_conditions(now.rules)):
+    for rule, i, side, value in list(now.rules.bounds()):
         for digits in range(MOST_DIGITS):
             shorter = now.rules.with_bound(rule, i, side, round(value, digits))
             if now.costs(shorter, rule) <= least:
                 now = now.instead(shorter)
                 break
     return now
-
-
-def _conditions(rules: DecisionList) -> Iterator[tuple[int, int, str, float]]:
-    """Rule, input, side and value of each bound, those of the last rule first."""
-    for rule in reversed(range(len(rules))):
-        for i, side, value in _bounds(rules, rule):
-            yield rule, i, side, value
-
-
-def _bounds(rules: DecisionList, rule: int) -> Iterator[tuple[int, str, float]]:
-    """Input, side and value of each bound of a rule."""
-    for side, bounds in (("lower", rules.lower), ("upper", rules.upper)):
-        for i in np.flatnonzero(np.isfinite(bounds[rule])):
-            yield int(i), side, float(bounds[rule, i])

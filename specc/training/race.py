@@ -116,7 +116,7 @@ def heat(
 ) -> list[Episode]:
     """Let each of them have its episodes in some worlds more; those that had to be lived."""
     done = len(racers[0].episodes)
-    known = [] if holder is None else holder.episodes[done:]
+    known = [] if holder is None else holder.episodes[done : done + len(worlds)]
     shared = [_shared(racer, holder, known, len(worlds)) for racer in racers]
     tasks = [
         Task(world, racer.rules, 0.0)
@@ -124,7 +124,7 @@ def heat(
         for world, is_shared in zip(worlds, own, strict=True)
         if not is_shared
     ]
-    what = f"trying {len(racers)} lists in {len(worlds)} worlds:"
+    what = f"trying lists ({len(racers)}) in worlds ({len(worlds)}):"
     lived = live_through(workers, tasks, what, tell)
     new = iter(lived)
     for racer, own in zip(racers, shared, strict=True):

@@ -1,6 +1,6 @@
 """What came of a training: the arbiter with its rules, how it does, and what that took."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, final
 
@@ -9,7 +9,7 @@ import numpy as np
 from compiler.architecture.arbiters import lower_arbiter
 from compiler.architecture.library import Library
 from compiler.findings import Findings
-from lcs.policies.decision_list import always, uncounted
+from lcs.policies.decision_list import DecisionList, always, uncounted
 from lcs.policies.steps import joined
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
@@ -21,8 +21,8 @@ from spec_schema.load import Loaded, load, load_source
 from spec_schema.source import Source
 from specc.faults import fault
 from specc.training.challengers import policy_of
-from specc.training.compaction import Compacted, compacted
-from specc.training.course import Course, Generation
+from specc.training.compaction import Trials, compacted
+from specc.training.course import Course, Generation, Trial, trial_of
 from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
@@ -34,6 +34,16 @@ from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
 BY_HAND: Final = "write `by:` with its learner on a line below, as in docs/training.md"
+
+
+@final
+@dataclass(frozen=True, eq=False, slots=True)
+class Kept:
+    """The list that is kept, how it did in the last race, and how it did before it was plain."""
+
+    rules: DecisionList
+    trial: Trial
+    before: Trial
 
 
 @final
@@ -56,7 +66,7 @@ class Trained:
     warnings: tuple[Diagnostic, ...]
     course: Course
     best: Generation
-    kept: Compacted
+    kept: Kept
     table: RuleTable
     judged: tuple[Judged, ...]
     pace: Pace
@@ -85,11 +95,11 @@ def concluded(
         NoRoomError, UserCodeError, LearnerError, SpecError: as `go_on`.
     """
     race = last_race(course, begun.settings, workers, tell)
+    plain = compacted(race.winner, Trials(race.worlds, workers, tell))
     tell("learning from everything", 0, 1)
-    lived = joined((*course.lived, *(each.steps for each in race.winner.episodes)))
+    lived = joined((*course.lived, *(each.steps for each in plain.episodes)))
     found = policy_of(lived, scenario, begun.settings, len(course.generations))
-    kept = compacted(race, found, workers, tell)
-    rules, table = found.counted(kept.rules), found.tables[0]
+    rules, table = found.counted(plain.rules), found.tables[0]
     before = trained_arbiter(scenario)
     beside = judged((rules, table), before, begun.held_out, workers, tell) if begun.held_out else ()
     edited = with_rules(loaded, before, begun.settings.learner, rules)
@@ -105,7 +115,7 @@ def concluded(
         warnings=warnings,
         course=course,
         best=race.best,
-        kept=replace(kept, rules=rules),
+        kept=Kept(rules, trial_of(plain.episodes), trial_of(race.winner.episodes)),
         table=table,
         judged=beside,
         pace=pace,
