@@ -178,7 +178,7 @@ def _begun(path: Path | None, asked: Asked, given: Output) -> Status:
 
 
 def _resumed(path: Path | None, asked: Asked, given: Output) -> Status:
-    from specc.training.folder import begun_in, scenario_in
+    from specc.training.folder import begun_in, is_finished, scenario_in
     from specc.training.result import text_of
 
     if given.folder is None:
@@ -191,8 +191,30 @@ def _resumed(path: Path | None, asked: Asked, given: Output) -> Status:
             f"as it was begun: leave out what else is said"
         )
     now = _scenario(Path(begun.scenario))
-    text = text_of(now, begun.settings.learner)
-    return _run(begun, scenario_in(given.folder, now), text, given)
+    text, scenario = text_of(now, begun.settings.learner), scenario_in(given.folder, now)
+    if is_finished(given.folder, scenario):
+        return _told_again(given.folder, scenario, text, begun.settings.learner, given)
+    return _run(begun, scenario, text, given)
+
+
+def _told_again(
+    folder: Path, scenario: "Scenario", text: "Loaded", learner: str, given: Output
+) -> Status:
+    """What a finished training left."""
+    import json
+
+    from specc.training.folder import RECORD, SUMMARY
+    from specc.training.written import kept_text, write_in_place
+
+    say(f"this training is finished; its results are in {folder}", "bold")
+    if given.form is Format.JSON:
+        print_json(json.loads((folder / RECORD).read_text()))
+    else:
+        print_text((folder / SUMMARY).read_text().rstrip("\n"))
+    if given.writes:
+        edited = kept_text(folder, scenario, text.source, learner)
+        say(f"wrote the rules into {write_in_place(text.source, edited)}", "bold")
+    return Status.YES
 
 
 def _scenario(path: Path) -> "Scenario":
@@ -276,7 +298,8 @@ def _write(trained: "Trained", given: Output) -> None:
             names = write_all(trained, given.folder, given.style, bar)
         say(f"wrote {', '.join(names)} into {given.folder}", "bold")
     if given.writes:
-        say(f"wrote the rules into {write_in_place(trained)}", "bold")
+        path = write_in_place(trained.source, trained.edited)
+        say(f"wrote the rules into {path}", "bold")
 
 
 def _tell(trained: "Trained", form: Format) -> None:

@@ -32,6 +32,7 @@ SCENARIO: Final = "scenario.specc"
 SUMMARY: Final = "summary.txt"
 RECORD: Final = "summary.json"
 CURVES: Final = "curves.svg"
+RESULTS: Final = SUMMARY, RECORD, CURVES
 VERSION: Final = 1
 """Of the record of a training."""
 
@@ -61,7 +62,7 @@ def begin_in(folder: Path, begun: Begun, scenario: Scenario) -> None:
     if (folder / TRAINING).exists():
         remedy = f"`specc train --resume -o {folder}` goes on with it; or name another folder"
         raise fault("V411", folder, "this folder holds a training already", remedy)
-    names = (SCENARIO, CHECKPOINT, SUMMARY, RECORD, CURVES, arbiter_name(scenario))
+    names = (SCENARIO, CHECKPOINT, *RESULTS, arbiter_name(scenario))
     refuse_taken([folder / name for name in names], "V414", "training")
     write_atomically(folder / SCENARIO, to_bytes(scenario))
     beside = os.path.relpath(begun.scenario, folder)
@@ -119,6 +120,11 @@ def keep_in(folder: Path | None, course: Course) -> None:
     """
     if folder is not None:
         keep(course, folder / CHECKPOINT)
+
+
+def is_finished(folder: Path, scenario: Scenario) -> bool:
+    """Whether everything is there that a training leaves."""
+    return all((folder / name).exists() for name in (arbiter_name(scenario), *RESULTS))
 
 
 def arbiter_name(scenario: Scenario) -> str:

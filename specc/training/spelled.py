@@ -1,7 +1,8 @@
 """Learned rules as they stand in an arbiter's YAML, and an arbiter's text with them in it."""
 
 from collections.abc import Iterator, Sequence
-from typing import TypeGuard
+from dataclasses import dataclass
+from typing import Final, TypeGuard, final
 
 import numpy as np
 
@@ -12,10 +13,22 @@ from runtime.program import Kind
 from spec_schema.editing.edits import Edit, NewLines, NewText
 from spec_schema.editing.in_place import edited
 from spec_schema.load import Loaded
-from spec_schema.node import Mapping, Node, Plain
+from spec_schema.node import Mapping, Node, Plain, plain
 from spec_schema.scalars import resolve
 from spec_schema.source import Source
 from spec_schema.yaml_reader import read
+
+COUNTS: Final = "right", "wrong"
+"""How often a rule was right in training, and how often it was not."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Spelled:
+    """What stands under the learner of an arbiter: what is chosen otherwise, and each rule."""
+
+    otherwise: str
+    rules: tuple[dict[str, Plain], ...]
 
 
 def with_rules(loaded: Loaded, arbiter: Arbiter, learner: str, rules: DecisionList) -> Source:
@@ -30,9 +43,26 @@ def with_rules(loaded: Loaded, arbiter: Arbiter, learner: str, rules: DecisionLi
     Raises:
         EditError: its `by` is written in a way that can't be changed in place.
     """
-    source = loaded.source
-    by = _value(read(source), "by")
-    return edited(source, tuple(_edits(by, arbiter, learner, rules)))
+    return with_spelled(loaded.source, learner, _spelled(arbiter, rules))
+
+
+def with_spelled(source: Source, learner: str, rules: Spelled) -> Source:
+    """The text of an arbiter with these rules, as `with_rules`.
+
+    Raises:
+        EditError: its `by` is written in a way that can't be changed in place.
+    """
+    return edited(source, tuple(_edits(_value(read(source), "by"), learner, rules)))
+
+
+def spelled_in(source: Source, learner: str) -> Spelled:
+    """What stands in a text that `with_rules` made."""
+    own = plain(_value(_value(read(source), "by"), learner))
+    assert isinstance(own, dict), "the language refuses all else"
+    otherwise, rules = own["otherwise"], own["rules"]
+    assert isinstance(otherwise, str), "the language refuses all else"
+    assert isinstance(rules, list), "the language refuses all else"
+    return Spelled(otherwise, tuple(rule for rule in rules if isinstance(rule, dict)))
 
 
 def condition(rules: DecisionList, rule: int, reads: Sequence[Read]) -> str:
@@ -41,18 +71,18 @@ def condition(rules: DecisionList, rule: int, reads: Sequence[Read]) -> str:
     return " and ".join(part for each, low, high in bounds for part in _parts(each, low, high))
 
 
-def _edits(by: Node, arbiter: Arbiter, learner: str, rules: DecisionList) -> Iterator[Edit]:
+def _edits(by: Node, learner: str, rules: Spelled) -> Iterator[Edit]:
     """As little as can be: the rules and what is chosen otherwise, where both stand there."""
-    otherwise = arbiter.choices[rules.otherwise]
     own = by.entries[learner].value if isinstance(by, Mapping) and learner in by.entries else None
-    lines, data = _rules(arbiter, rules)
-    content: dict[str, Plain] = {"otherwise": otherwise, "rules": data}
-    is_plain = _quoted(otherwise) == otherwise
+    data: list[Plain] = [*rules.rules]
+    lines, otherwise = [_line(rule) for rule in rules.rules], _quoted(rules.otherwise)
+    content: dict[str, Plain] = {"otherwise": rules.otherwise, "rules": data}
+    is_plain = rules.otherwise == otherwise
     if _stands_in_lines(own) and set(own.entries) == set(content) and data and is_plain:
         yield NewText(("by", learner, "otherwise"), otherwise)
         yield NewLines(("by", learner, "rules"), tuple(lines), data)
         return
-    inner = [f"otherwise: {_quoted(otherwise)}", *_listed(lines)]
+    inner = [f"otherwise: {otherwise}", *_listed(lines)]
     if own is not None and _stands_in_lines(by):
         yield NewLines(("by", learner), tuple(inner), content)
     else:
@@ -64,18 +94,25 @@ def _listed(lines: Sequence[str]) -> list[str]:
     return ["rules:", *(f"  {line}" for line in lines)] if lines else ["rules: []"]
 
 
-def _rules(arbiter: Arbiter, rules: DecisionList) -> tuple[list[str], list[Plain]]:
-    """The rules as lines, and what is read of these."""
-    lines: list[str] = []
-    data: list[Plain] = []
-    for r in range(len(rules)):
-        choice, when = arbiter.choices[rules.action[r]], condition(rules, r, arbiter.reads)
-        right, wrong = int(rules.right[r]), int(rules.wrong[r])
-        parts = [f"choose: {_quoted(choice)}", *([f'when: "{when}"'] if when else [])]
-        lines.append(f"- {{{', '.join(parts)}, right: {right}, wrong: {wrong}}}")
-        record: dict[str, Plain] = {"choose": choice, "right": right, "wrong": wrong}
-        data.append({**record, "when": when} if when else record)
-    return lines, data
+def _line(rule: dict[str, Plain]) -> str:
+    """A rule as it is written."""
+    choose, when = _quoted(str(rule["choose"])), rule.get("when")
+    parts = [f"choose: {choose}", *([] if when is None else [f'when: "{when}"'])]
+    return f"- {{{', '.join([*parts, *(f'{name}: {rule[name]}' for name in COUNTS)])}}}"
+
+
+def _spelled(arbiter: Arbiter, rules: DecisionList) -> Spelled:
+    """A list in the arbiter's own words."""
+    return Spelled(
+        arbiter.choices[rules.otherwise], tuple(_rule(arbiter, rules, r) for r in range(len(rules)))
+    )
+
+
+def _rule(arbiter: Arbiter, rules: DecisionList, rule: int) -> dict[str, Plain]:
+    when = condition(rules, rule, arbiter.reads)
+    counts: dict[str, Plain] = {name: int(getattr(rules, name)[rule]) for name in COUNTS}
+    said: dict[str, Plain] = {"choose": arbiter.choices[rules.action[rule]], **counts}
+    return {**said, "when": when} if when else said
 
 
 def _parts(read: Read, low: float, high: float) -> Iterator[str]:

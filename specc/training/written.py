@@ -5,6 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from runtime.scenario import Scenario
+from spec_schema.load import load
+from spec_schema.source import Source
 from specc.figures.palettes import PALETTES
 from specc.figures.style import Picture, rendered
 from specc.figures.style_names import Style
@@ -16,6 +19,7 @@ from specc.training.episode import training_of
 from specc.training.folder import CURVES, RECORD, SUMMARY, arbiter_name
 from specc.training.judging import interval
 from specc.training.result import Trained
+from specc.training.spelled import spelled_in, with_spelled
 
 
 def write_all(
@@ -34,15 +38,25 @@ def write_all(
     return names
 
 
-def write_in_place(trained: Trained) -> Path:
+def write_in_place(before: Source, after: Source) -> Path:
     """Replace the arbiter's own text by that with its rules; its path.
 
     Raises:
         SpecError: it was changed in the meantime (V374), or can't be written (V347).
     """
-    path = Path(trained.source.name)
-    write_over(path, trained.source.text, trained.edited.text, "its arbiter was trained")
+    path = Path(before.name)
+    write_over(path, before.text, after.text, "its arbiter was trained")
     return path
+
+
+def kept_text(folder: Path, scenario: Scenario, now: Source, learner: str) -> Source:
+    """The arbiter's own text as it is now, with the rules of a training that is finished.
+
+    Raises:
+        SpecError: what is kept can't be read.
+    """
+    kept = load(folder / arbiter_name(scenario)).source
+    return with_spelled(now, learner, spelled_in(kept, learner))
 
 
 def _files(trained: Trained, style: Style) -> Iterator[tuple[str, bytes]]:

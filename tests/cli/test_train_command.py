@@ -74,6 +74,24 @@ def test_what_was_learnt_is_left_told_and_written(capsys: pytest.CaptureFixture[
     assert "the arbiter as it was" not in capsys.readouterr().out
 
 
+def test_a_finished_training_is_told_again_and_lives_nothing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = begun()
+    assert main(RESUME) == 0
+    told = capsys.readouterr().out
+    changed = FILES["choose.yaml"].replace("# Who acts in the pen.", "# Who acts there.")
+    Path("choose.yaml").write_text(changed)
+    monkeypatch.setattr("specc.training.workers.Workers.lived", None)
+
+    assert main([*RESUME, "--write"]) == 0
+    again = capsys.readouterr()
+    assert again.out == told
+    assert "this training is finished; its results are in out" in again.err
+    learnt = (out / "choose.yaml").read_text()
+    assert Path("choose.yaml").read_text() == learnt.replace("acts in the pen.", "acts there.")
+
+
 def test_an_arbiter_that_had_rules_is_judged_beside(capsys: pytest.CaptureFixture[str]) -> None:
     path = written_in(Path())
     rules = "alcsr: {otherwise: turn, rules: [{choose: go, when: ahead > 0.5}]}"
