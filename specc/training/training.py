@@ -17,6 +17,7 @@ from specc.training.episode import Episode, Task
 from specc.training.living import Progress, live_through
 from specc.training.race import raced
 from specc.training.settings import Settings
+from specc.training.unlearnable import refuse_decided
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
@@ -62,7 +63,8 @@ def go_on(
         NoRoomError: there is no room for what is placed at random.
         UserCodeError: the scenario needs Python of the user's own.
         LearnerError: what is read, or rewarded, is not finite.
-        SpecError: a process that lived episodes is gone (V417).
+        SpecError: a process that lived episodes is gone (V417), or none was longer than a decision
+            (V418).
     """
     while not course.is_over(settings):
         course = _one_more(course, scenario, settings, workers, tell)
@@ -86,6 +88,8 @@ def _one_more(
     episodes = live_through(workers, exploring_tasks(course, settings), "exploring", told)
     clock.append(perf_counter())
     tell(f"learning{standing}", min(done_so_far, most), most)
+    if number == 0:
+        refuse_decided(scenario, episodes)
     lived = (*course.lived, *(episode.steps for episode in episodes))
     champion = course.champion.rules if course.generations else None
     found = challengers_of(joined(lived), champion, scenario, settings, number)

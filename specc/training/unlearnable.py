@@ -1,16 +1,18 @@
 """Why nothing can be learnt from what was lived, as a diagnostic."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final
 
 from lcs.faults import LearnerError
 from runtime.scenario import Scenario
 from specc.faults import fault
-from specc.training.episode import training_of
+from specc.training.episode import Episode, training_of
 
 FINITE: Final = "let the reward, and each reading, be a number everywhere: divide by nothing that \
 can be 0, and bound what can grow without end"
+
+BEGINS: Final = "let `ends_when` be false where a run begins; and let a decision be due more often"
 
 
 @contextmanager
@@ -25,3 +27,14 @@ def told_unlearnable(scenario: Scenario) -> Iterator[None]:
     except LearnerError as error:
         message = f"{training_of(scenario).arbiter} can't learn from this: {error}"
         raise fault("V416", scenario.source.file, message, FINITE) from error
+
+
+def refuse_decided(scenario: Scenario, episodes: Sequence[Episode]) -> None:
+    """Stop where all episodes are over as soon as they begin.
+
+    Raises:
+        SpecError: they are (V418).
+    """
+    if all(len(each.steps) <= 1 and each.steps.ends.all() for each in episodes):
+        message = f"each of {len(episodes)} episodes ended with its first decision"
+        raise fault("V418", scenario.source.file, message, BEGINS)

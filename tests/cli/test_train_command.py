@@ -235,6 +235,17 @@ def test_a_reward_without_end_is_refused(capsys: pytest.CaptureFixture[str]) -> 
     assert "pen.yaml: error[V416]: r.choose can't learn from this: the reward of decision" in told
 
 
+def test_episodes_that_are_over_as_they_begin_are_refused(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = written_in(Path())
+    path.write_text(FILES["pen.yaml"].replace("r.clearance < 1 mm", "r.clearance > -1 m"))
+
+    assert main(["train", "pen.yaml", "-n", "6"]) == 2
+    told = capsys.readouterr().err
+    assert "pen.yaml: error[V418]: each of 2 episodes ended with its first decision" in told
+
+
 def test_what_is_resumed_is_not_said_anew(capsys: pytest.CaptureFixture[str]) -> None:
     begun()
 
