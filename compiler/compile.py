@@ -19,7 +19,7 @@ from typing import TypeAlias, final
 from compiler.assemble import assembled
 from compiler.check_behavior import Checked, check_behavior
 from compiler.horizon import excess
-from compiler.lower_field import Progress, lower_field, measured
+from compiler.lower_field import lower_field, measured
 from compiler.plan import Plan, UnboundedError, plan_formula, plan_sampled
 from compiler.python_module import ModuleError, refuse_module
 from compiler.settings import Settings
@@ -32,6 +32,7 @@ from compiler.sketch.lower import SKETCH, plan_sketch
 from compiler.tabulate import TableError
 from compiler.terms import TooManyCasesError
 from runtime.program import Field, Program
+from runtime.progress import Progress
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Form, Formula, Module, Step

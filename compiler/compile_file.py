@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from compiler.check import check_examined
-from compiler.compile import Compiled, Judge, Progress, compile_loaded
+from compiler.compile import Compiled, Judge, compile_loaded
+from runtime.progress import Progress
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import examine
 

@@ -1,8 +1,7 @@
 """Pass 6: sheets become tables, tables become the field of a program, and its error is measured."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
@@ -27,10 +26,9 @@ from runtime.code import Code
 from runtime.flow import Source, flow_of, next_states, rates
 from runtime.machine import evaluate
 from runtime.program import ErrorBound, Field, Program, Term
+from runtime.progress import Progress
 from runtime.table import Method, Table
 from spec_schema.expressions.tree import Expr
-
-Progress: TypeAlias = Callable[[str, int, int], None]
 
 RELATIVE = {  # of the largest rate, where the spec declares no tolerance
     ("formula", Method.CUBIC): 1e-6,

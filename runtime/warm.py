@@ -19,6 +19,7 @@ from runtime.kernels.interpolate import block_address
 from runtime.kernels.machine import machine_address
 from runtime.machine import evaluate
 from runtime.program import Field, Kind, Origin, Program, Role, State, Unit
+from runtime.progress import Progress
 from runtime.scheduler.inputs import Inputs
 from runtime.scheduler.ticker import Ticker
 from runtime.table import Axis, Method
@@ -137,7 +138,7 @@ def is_warm() -> bool:
     return mark is not None and mark.exists()
 
 
-def warm(progress: Callable[[str, int, int], None]) -> None:
+def warm(progress: Progress) -> None:
     """Compile and keep every kernel; `progress(name, done, total)` is called before each."""
     for done, (name, call) in enumerate(KERNELS):
         progress(name, done, len(KERNELS))

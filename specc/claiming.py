@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from compiler.lower_field import Progress
 from runtime.program import Program
+from runtime.progress import Progress
 from specc.loading import as_program
 from verifier.topology.claims.findings import Finding
 from verifier.topology.claims.judge import judge

@@ -9,13 +9,13 @@ from typing import Final
 from compiler.architecture.compile import CompiledArchitecture, compile_architecture
 from compiler.compile import Compiled
 from compiler.compile_file import compile_file
-from compiler.lower_field import Progress
 from compiler.world.scenario import CompiledScenario, compile_scenario
 from runtime import architecture_artifact, scenario_artifact
 from runtime.architecture import Architecture
 from runtime.artifact import ArtifactError, to_bytes
 from runtime.artifact import read as read_artifact
 from runtime.program import Program
+from runtime.progress import Progress, in_silence
 from runtime.scenario import Scenario
 from runtime.world.model import Body
 from spec_schema.load import examine
@@ -28,12 +28,8 @@ LOGS: Final = frozenset({".mcap", ".bag", ".db3", ".ulg", ".csv"})
 """What files are called that are no specs."""
 
 
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
-
-
 def compile_spec(
-    path: Path | str, progress: Progress = _in_silence, *, allow_code: bool = True
+    path: Path | str, progress: Progress = in_silence, *, allow_code: bool = True
 ) -> Compiled:
     """Compile a behavior spec; `progress(what, done, of)` is called on the way.
 
@@ -61,7 +57,7 @@ def kind_of(path: Path | str) -> str:
 
 
 def compile_architecture_spec(
-    path: Path | str, progress: Progress = _in_silence, *, allow_code: bool = False
+    path: Path | str, progress: Progress = in_silence, *, allow_code: bool = False
 ) -> CompiledArchitecture:
     """Compile an architecture and all that it names.
 
@@ -76,7 +72,7 @@ def compile_architecture_spec(
 
 def compile_scenario_spec(
     path: Path | str,
-    progress: Progress = _in_silence,
+    progress: Progress = in_silence,
     seed: int | None = None,
     *,
     allow_code: bool = False,
@@ -108,7 +104,7 @@ def load_architecture(path: Path | str) -> tuple[Architecture, Body]:
 
 def load_scenario(
     path: Path | str,
-    progress: Progress = _in_silence,
+    progress: Progress = in_silence,
     seed: int | None = None,
     *,
     allow_code: bool = False,

@@ -8,11 +8,12 @@ from typing import Final, TypeAlias, final
 import numpy as np
 
 from runtime.program import Control, Kind, Program, State
+from runtime.progress import Progress, in_silence
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.given import Value, settings_for
 from specc.loading import as_program
-from verifier.topology.branches.branching import Progress, find_branches, in_silence
+from verifier.topology.branches.branching import find_branches
 from verifier.topology.branches.continuation import Branches
 from verifier.topology.features import Portrait
 from verifier.topology.hybrid.portrait import FIELD_OF, OF_EACH_PANEL

@@ -7,7 +7,7 @@ from compiler.architecture.library import Behavior, Library, checked_only
 from compiler.architecture.passes import CompiledArchitecture, compile_parts
 from compiler.compile import Judge, compile_loaded
 from compiler.findings import Findings
-from compiler.lower_field import Progress
+from runtime.progress import Progress
 from spec_schema.architecture import ArchitectureSpec
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError

@@ -5,8 +5,8 @@ from pathlib import Path as FilePath
 from compiler.architecture.compile import tabulating
 from compiler.compile import Judge
 from compiler.findings import Findings
-from compiler.lower_field import Progress
 from compiler.world.scenario_passes import CompiledScenario, compile_parts_of_scenario
+from runtime.progress import Progress
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.load import Loaded, examine
 from spec_schema.scenario import ScenarioSpec

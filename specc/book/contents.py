@@ -1,12 +1,13 @@
 """All that a book is made of, gathered once: what was compiled, and what was found out of it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, TypeAlias, final
+from typing import Final, final
 
 from runtime import architecture_artifact, scenario_artifact
 from runtime.architecture import Architecture, Node
+from runtime.progress import Progress
 from runtime.scenario import Scenario
 from runtime.world.model import Body
 from spec_schema.diagnostics import Diagnostic
@@ -25,7 +26,6 @@ from specc.origins import renamed
 from specc.scenarios.simulating import Simulation, simulate_scenario
 from verifier.report.requirement_results import RequirementResult
 
-Progress: TypeAlias = Callable[[str, int, int], None]
 LIGHT: Final = 1.0
 """Seconds between two pictures of the light on the floor."""
 

@@ -3,13 +3,13 @@
 from pathlib import Path
 from typing import Final
 
+from runtime.progress import Progress, in_silence
 from specc import __version__
 from specc.book import manifest
-from specc.book.contents import Contents, Progress, gathered
+from specc.book.contents import Contents, gathered
 from specc.book.entries import architecture_entry
 from specc.book.folder import MANIFEST, refuse_early, write_folder
 from specc.book.illustrations import figures_of
-from specc.book.loading import in_silence
 from specc.book.manifest import Book, Required
 from specc.book.naming import Names, names_of
 from specc.book.reader import READER, reader_text

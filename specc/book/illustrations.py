@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TypeAlias
 
-from specc.book.contents import Contents, Progress
+from runtime.progress import Progress
+from specc.book.contents import Contents
 from specc.book.naming import RUN, Names
 from specc.figures.decisions import draw_decisions
 from specc.figures.palettes import PALETTES

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
-from compiler.lower_field import Progress
 from runtime import architecture_artifact, scenario_artifact
 from runtime.architecture import Architecture
+from runtime.progress import Progress, in_silence
 from runtime.scenario import Scenario
 from runtime.world.model import Body
 from specc import loading
@@ -41,10 +41,6 @@ def load_book(path: Path | str) -> LoadedBook:
     scenario = loading.load_scenario(path / book.artifact).scenario
     pairs = {r.architecture.source.file: (r.architecture, r.body) for r in scenario.robots}
     return LoadedBook(path, book, scenario, tuple(pairs.values()))
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 def compile_book(

@@ -5,6 +5,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Final, final
 
+from runtime.progress import Progress
 from specc.cli.console import messages, print_json, print_text, progress_bar, say, show_diagnostics
 from specc.cli.options import Format
 from specc.cli.showing import Pictures, size_text
@@ -12,8 +13,6 @@ from specc.cli.status import Status
 from specc.cli.warming import warmed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from runtime.scenario import Scenario
     from specc.scenarios.simulating import Simulation
     from specc.scenarios.watching import Onlooker
@@ -86,7 +85,7 @@ def _watched(scenario: "Scenario", wanted: Wanted) -> "Simulation":
 def _simulated(
     scenario: "Scenario",
     wanted: Wanted,
-    tell: "Callable[[str, int, int], None] | None" = None,
+    tell: Progress | None = None,
     onlooker: "Onlooker | None" = None,
 ) -> "Simulation":
     from specc.scenarios.simulating import simulate_scenario

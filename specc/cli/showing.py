@@ -1,12 +1,12 @@
 """Options by which a run is looked at: a poster, a film, a live view. Shared by two commands."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, TypeAlias, final
 
 import typer
 
+from runtime.progress import Progress
 from specc.cli.console import say
 from specc.figures.style_names import Style
 
@@ -80,7 +80,7 @@ class Pictures:
         if self.film is not None:
             require_film(self.film)
 
-    def draw(self, scene: "Scene", trails: "Trails", tell: Callable[[str, int, int], None]) -> None:
+    def draw(self, scene: "Scene", trails: "Trails", tell: Progress) -> None:
         """Write the files, each whole or not at all."""
         from specc.drawn import write_picture
         from specc.figures.animation import animate

@@ -3,17 +3,18 @@
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 from matplotlib.colors import to_rgb
 from PIL import Image
 
 from runtime.arrays import Array, Integers
+from runtime.progress import Progress, in_silence
 from spec_schema.diagnostics import SpecError
 from specc.faults import fault
 from specc.figures.palettes import PALETTES, Palette
@@ -24,8 +25,6 @@ from specc.figures.style_names import Style
 from specc.figures.trails import DOERS, SELDOM, look_of, names_of, shares_of
 from specc.figures.world import LAMP
 from specc.files import unknown_suffix, write_atomically
-
-Progress: TypeAlias = Callable[[str, int, int], None]
 
 RATE: Final = 12.0
 """Frames per second."""
@@ -56,7 +55,7 @@ def animate(
         SpecError: another suffix, .mp4 without ffmpeg, or a file that can't be written.
     """
     require_film(path)
-    tell = progress or _in_silence
+    tell = progress or in_silence
     fast = speed or speed_for(float(trails.times[-1] - trails.times[0]))
     film = frames(scene, trails, style, (rate, fast), tell)
     if path.suffix.lower() == ".gif":
@@ -171,7 +170,3 @@ def _mp4(film: Iterator[Image.Image], path: Path, rate: float) -> bytes:
 def _no_ffmpeg(path: Path) -> SpecError:
     message = "an .mp4 is made by ffmpeg, and no ffmpeg is on the PATH"
     return fault("V345", path, message, f"install ffmpeg, or write {path.with_suffix('.gif').name}")
-
-
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any, TypeAlias, final
 
 from lcs.problems.steps import Plane
+from runtime.progress import Progress
 from specc.faults import fault
 from specc.learning import folder as folders
 from specc.learning.experiment import Experiment, Subject
 from specc.learning.resuming import DAMAGED, keep, taken_up
-from specc.learning.run import Outcome, Run, Teacher, Tell
+from specc.learning.run import Outcome, Run, Teacher
 from specc.learning.running import go_on
 from specc.learning.teaching_problems import ProblemTeacher
 from specc.learning.teaching_worlds import WorldTeacher
@@ -46,7 +47,7 @@ def learnt_from(
     config: Any,
     folder: Path | None,
     *,
-    tell: Tell,
+    tell: Progress,
     shall_stop: Callable[[], bool],
 ) -> tuple[AnyRun, ...] | Stopped:
     """All runs of an experiment, or what is left of them.
@@ -91,7 +92,7 @@ def learnt_from(
 
 
 def concluded(
-    experiment: Experiment, problem: Subject, config: Any, runs: tuple[AnyRun, ...], tell: Tell
+    experiment: Experiment, problem: Subject, config: Any, runs: tuple[AnyRun, ...], tell: Progress
 ) -> Learnt:
     """What came of runs that are done."""
     outcomes = _teacher(experiment, problem, config).concluded(runs, tell)

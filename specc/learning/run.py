@@ -1,19 +1,17 @@
 """A run of an experiment: a learner, what went on, and how far it is; and who teaches it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Generic, Protocol, TypeAlias, TypeVar, final
+from typing import Generic, Protocol, TypeVar, final
 
 from lcs.rules.compaction import Compacted
 from lcs.rules.experience import Experience
 from lcs.state import Saved
+from runtime.progress import Progress
 from specc.learning.courses import Piece, joined
 
 Pupil = TypeVar("Pupil", bound=Saved)
 Figures = TypeVar("Figures")
-
-Tell: TypeAlias = Callable[[str, int, int], None]
-"""Is told what is done, how much of it, and of how much."""
 
 
 @final
@@ -64,7 +62,7 @@ class Teacher(Protocol[Pupil, Piece, Figures]):
         ...
 
     def concluded(
-        self, runs: Sequence[Run[Pupil, Piece]], tell: Tell
+        self, runs: Sequence[Run[Pupil, Piece]], tell: Progress
     ) -> tuple[Outcome[Figures], ...]:
         """What came of each of the runs, which are done."""
         ...

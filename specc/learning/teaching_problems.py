@@ -6,10 +6,11 @@ from time import perf_counter
 from typing import Any, Final, final
 
 from lcs.problems.problem import Problem
+from runtime.progress import Progress
 from specc.learning.courses import Answered, joined, last_tests
 from specc.learning.drawing import BLOCK, block
 from specc.learning.learners import SavedLearner, learner_for
-from specc.learning.run import Outcome, Run, Tell
+from specc.learning.run import Outcome, Run
 from specc.learning.summary import Summary, summed_up
 from specc.learning.thinning import figures_of, seen_by, thinned
 
@@ -58,7 +59,7 @@ class ProblemTeacher:
         return f"{100.0 * tests.mean():.0f} % of the last {len(tests)} tests right, {rules}"
 
     def concluded(
-        self, runs: Sequence[Run[SavedLearner, Answered]], tell: Tell
+        self, runs: Sequence[Run[SavedLearner, Answered]], tell: Progress
     ) -> tuple[Outcome[Summary], ...]:
         """What came of each of the runs, which are done."""
         problem, found = self.problem, []

@@ -13,9 +13,10 @@ from lcs.rules.experience import Experience
 from lcs.steps.config import Config
 from lcs.steps.learner import Episodes, StepsLearner
 from lcs.steps.policy import judged, policy
+from runtime.progress import Progress
 from specc.learning.courses import Walked
 from specc.learning.drawing import followed, outside, places, starts
-from specc.learning.run import Outcome, Run, Tell
+from specc.learning.run import Outcome, Run
 from specc.learning.world_summary import WorldSummary, summed_up
 
 CELLS: Final = 100
@@ -73,7 +74,7 @@ class WorldTeacher:
         return f"{last.best_steps[-1]:.1f} steps to the goal, {boxes:,} boxes"
 
     def concluded(
-        self, runs: Sequence[Run[StepsLearner, Walked]], tell: Tell
+        self, runs: Sequence[Run[StepsLearner, Walked]], tell: Progress
     ) -> tuple[Outcome[WorldSummary], ...]:
         """What came of each of the runs, which are done."""
         tell("finding the optimum", 0, 1 + len(runs))

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
@@ -15,6 +15,7 @@ from lcs.rules.as_csv import as_csv
 from lcs.rules.as_json import as_record
 from lcs.rules.words import in_words
 from lcs.saving import as_bytes
+from runtime.progress import Progress
 from specc.figures.style_names import Style
 from specc.files import json_bytes, write_atomically
 from specc.learning.courses import Answered, Walked
@@ -38,9 +39,7 @@ COLUMNS: Final = (
 )
 
 
-def write_all(
-    learnt: Learnt, folder: Path, style: Style, tell: Callable[[str, int, int], None]
-) -> list[str]:
+def write_all(learnt: Learnt, folder: Path, style: Style, tell: Progress) -> list[str]:
     """Write curves, rules, figures and the summary; their names in the folder.
 
     Raises:

@@ -1,8 +1,8 @@
 """A run, or its recording, as a picture and as a film."""
 
-from collections.abc import Callable
 from pathlib import Path
 
+from runtime.progress import Progress
 from specc.drawn import write_picture
 from specc.figures.animation import animate
 from specc.figures.scene import Scene, Trails
@@ -34,7 +34,7 @@ def film_run(
     *,
     speed: float | None = None,
     style: str = Style.SCREEN,
-    progress: Callable[[str, int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> None:
     """Write a film of a run as .gif, or as .mp4 where ffmpeg is installed.
 

@@ -1,11 +1,11 @@
 """A scenario run, and judged by what is required of it."""
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias, final
+from typing import final
 
+from runtime.progress import Progress, in_silence
 from runtime.run import Run, Seen, run
 from runtime.run_size import MOST, bytes_of, gigabytes
 from runtime.scenario import Scenario
@@ -16,8 +16,6 @@ from specc.loading import beside_artifact, load_scenario
 from specc.scenarios.failures import ALLOW, told_failures
 from verifier.architectures.required import results_on
 from verifier.report.requirement_results import Outcome, RequirementResult
-
-Progress: TypeAlias = Callable[[str, int, int], None]
 
 
 @final
@@ -64,7 +62,7 @@ def simulate_scenario(
         SpecError: the spec is wrong, there is no room (V381), or code of the user's own may not
             be run (V336, V382) or fails (V382).
     """
-    tell = progress or _in_silence
+    tell = progress or in_silence
     if not isinstance(spec, Scenario):
         beside = beside or beside_artifact(Path(spec))
         spec = load_scenario(spec, tell, allow_code=allow_code).scenario
@@ -109,7 +107,3 @@ def _refuse_too_large(scenario: Scenario, light_every: float | None) -> None:
         f"of which {gigabytes(MOST)} are allowed"
     )
     raise fault("V383", scenario.source.file, message, "take a shorter --duration")
-
-
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""

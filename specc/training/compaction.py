@@ -15,7 +15,7 @@ import numpy as np
 
 from lcs.policies.decision_list import DecisionList
 from lcs.policies.shortened import shortened
-from specc.training.living import Progress
+from runtime.progress import Progress
 from specc.training.race import SHARES, Racer, heat
 from specc.training.workers import Workers
 

@@ -14,9 +14,10 @@ from lcs.policies.policy import Policy
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
 from runtime.machine import evaluate
+from runtime.progress import Progress
 from specc.training.course import Trial, trial_of
 from specc.training.episode import Task
-from specc.training.living import Progress, live_through
+from specc.training.living import live_through
 from specc.training.training import AtRandom
 from specc.training.workers import Workers
 from specc.training.worlds import For, world

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
+from runtime.progress import Progress
 from specc.training.course import Course, Generation
-from specc.training.living import Progress
 from specc.training.race import Racer, raced
 from specc.training.settings import Settings
 from specc.training.training import choosing_worlds

@@ -1,13 +1,10 @@
 """Episodes lived one after the other, and told."""
 
-from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from collections.abc import Sequence
 
+from runtime.progress import Progress
 from specc.training.episode import Episode, Task
 from specc.training.workers import Workers
-
-Progress: TypeAlias = Callable[[str, int, int], None]
-"""Is told what is done, how much of it, and of how much."""
 
 
 def live_through(

@@ -7,8 +7,9 @@ from typing import Final, final
 import numpy as np
 
 from lcs.policies.decision_list import DecisionList
+from runtime.progress import Progress
 from specc.training.episode import Episode, Task
-from specc.training.living import Progress, live_through
+from specc.training.living import live_through
 from specc.training.workers import Workers
 
 SHARES: Final = (0.125, 0.375, 1.0)

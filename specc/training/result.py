@@ -13,6 +13,7 @@ from lcs.policies.decision_list import DecisionList, always, uncounted
 from lcs.policies.steps import joined
 from lcs.rules.table import RuleTable
 from runtime.arbiter import Arbiter
+from runtime.progress import Progress
 from runtime.scenario import Scenario
 from spec_schema.arbiter import ArbiterSpec
 from spec_schema.diagnostics import Diagnostic
@@ -27,7 +28,6 @@ from specc.training.episode import Task, trained_arbiter
 from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
 from specc.training.last_race import last_race
-from specc.training.living import Progress
 from specc.training.pace import Pace, paced
 from specc.training.spelled import with_rules
 from specc.training.workers import Workers

@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from lcs.arrays import Integers
 from lcs.policies.steps import joined
+from runtime.progress import Progress
 from runtime.scenario import Scenario
 from specc.training.challengers import challengers_of
 from specc.training.course import Course, Failure, Generation, Took, trial_of
 from specc.training.episode import Episode, Task
-from specc.training.living import Progress, live_through
+from specc.training.living import live_through
 from specc.training.race import raced
 from specc.training.settings import Settings
 from specc.training.unlearnable import refuse_decided

@@ -1,10 +1,11 @@
 """All files that a training leaves in its folder, once it is over."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
+from runtime.progress import Progress
 from runtime.scenario import Scenario
 from spec_schema.load import load
 from spec_schema.source import Source
@@ -22,9 +23,7 @@ from specc.training.result import Trained
 from specc.training.spelled import spelled_in, with_spelled
 
 
-def write_all(
-    trained: Trained, folder: Path, style: Style, tell: Callable[[str, int, int], None]
-) -> list[str]:
+def write_all(trained: Trained, folder: Path, style: Style, tell: Progress) -> list[str]:
     """Write the arbiter with its rules, the summary and the curves; their names in the folder.
 
     Raises:

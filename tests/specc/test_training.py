@@ -9,6 +9,7 @@ import pytest
 
 from lcs.policies.decision_list import always
 from lcs.policies.steps import Steps, joined
+from runtime.progress import in_silence
 from runtime.run import run
 from runtime.scenario import Scenario
 from spec_schema.diagnostics import SpecError
@@ -26,7 +27,7 @@ from specc.training.spelled import with_rules
 from specc.training.training import BEFORE, AtRandom, choosing_worlds, exploring_tasks
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
-from tests.specc.training_scenes import FILES, SMALL, equal, in_silence, pen_in, trained, written_in
+from tests.specc.training_scenes import FILES, SMALL, equal, pen_in, trained, written_in
 
 TRIAL = Trial(1.0, 0.5, 3.0, 7)
 FAILED = Failure(11, 40), Failure(12, 3)

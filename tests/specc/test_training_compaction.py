@@ -6,11 +6,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lcs.policies.decision_list import DecisionList, always
+from runtime.progress import in_silence
 from runtime.scenario import Scenario
 from specc.training.compaction import Trials, compacted, touched
 from specc.training.race import Racer, heat
 from specc.training.workers import Workers
-from tests.specc.training_scenes import in_silence, pen_in
+from tests.specc.training_scenes import pen_in
 
 GO, TURN = 0, 1
 WORLDS = range(8)

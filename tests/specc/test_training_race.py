@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from lcs.policies.decision_list import DecisionList, always
+from runtime.progress import in_silence
 from runtime.scenario import Scenario
 from specc.training.course import Course, Generation, Took, Trial
 from specc.training.last_race import last_race
 from specc.training.race import LEFT, Racer, raced
 from specc.training.settings import Settings
 from specc.training.workers import Workers
-from tests.specc.training_scenes import in_silence, pen_in
+from tests.specc.training_scenes import pen_in
 from verifier.report.requirement_results import Outcome
 
 GO, TURN = 0, 1

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Final
 
 from lcs.policies.decision_list import DecisionList
+from runtime.progress import in_silence
 from runtime.scenario import Scenario
 from specc.loading import load_scenario
 from specc.training.checkpoint import keep
@@ -146,10 +147,6 @@ def trained(
 
     with Workers(scenario, jobs) as workers:
         return go_on(course or Course(), scenario, SMALL, workers, in_silence, keeping)
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 def equal(one: DecisionList, other: DecisionList) -> bool:

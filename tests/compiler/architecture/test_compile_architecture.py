@@ -13,6 +13,7 @@ from compiler.check import check
 from runtime.architecture import Outside, Way
 from runtime.architecture_artifact import from_bytes, to_bytes
 from runtime.container import ArtifactError
+from runtime.progress import in_silence
 from spec_schema.diagnostics import SpecError
 
 PARTS = Path(__file__).parents[2] / "golden" / "bad" / "parts"
@@ -22,10 +23,6 @@ AVOID = "sense: {clearance: {from: ahead.range, outside: clip}}"
 SEEK = "sense: {bearing: beacon.bearing, distance: {from: beacon.distance, outside: clip}}"
 
 THREE = "choices: [x, y, z]\nby: {rules: [{choose: x, when: 1 > 2}, {choose: y}, {choose: z}]}\n"
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 @pytest.fixture(scope="module")

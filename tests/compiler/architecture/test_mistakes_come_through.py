@@ -9,6 +9,7 @@ import pytest
 from compiler.architecture.compile import compile_architecture, wire_architecture
 from compiler.check import check
 from compiler.world.scenario import compile_scenario
+from runtime.progress import in_silence
 from spec_schema.diagnostics import Diagnostic, SpecError
 
 PARTS = Path(__file__).parents[2] / "golden" / "bad" / "parts"
@@ -33,10 +34,6 @@ NAMED = {
     "architecture": "find_light.yaml",
     "world": "office.yaml",
 }
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 def refused(make: Callable[[], object]) -> tuple[Diagnostic, ...]:

@@ -15,13 +15,10 @@ from compiler.check import check
 from compiler.world.overlap import overlap, overlap_floor, within
 from compiler.world.scenario import CompiledScenario, compile_scenario
 from compiler.world.windows import reach_of
+from runtime.progress import in_silence
 from runtime.world.model import Disc, Polygon, Pose, Shape
 
 PARTS = Path(__file__).parents[2] / "golden" / "bad" / "parts"
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 @pytest.fixture(scope="module")

@@ -7,15 +7,16 @@ branches cross, as their tangents show, the same is done, although there are as 
 type on both sides. S: samples.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final, TypeAlias, final
+from typing import Final, final
 
 import numpy as np
 
 from runtime.arrays import Array, frozen
 from runtime.program import Control, Program
+from runtime.progress import Progress, in_silence
 from verifier.topology.branches.bifurcations import (
     Difference,
     Steps,
@@ -63,14 +64,6 @@ BIRTHS: Final = frozenset({Change.HOPF, Change.PERIOD_DOUBLING})
 
 MOST_BETWEEN: Final = 4
 """Bifurcations that are told apart between two neighbours."""
-
-
-Progress: TypeAlias = Callable[[str, int, int], None]
-"""Called with what is done, how much of it is done, and of how much."""
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 def find_branches(

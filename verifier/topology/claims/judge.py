@@ -10,11 +10,12 @@ from typing import Final
 
 from runtime.claim import Claim
 from runtime.program import Program
+from runtime.progress import Progress, in_silence
 from verifier.topology.claims.at_settings import Outcome, Verdict, verdict_at
 from verifier.topology.claims.findings import Finding, Ruling, Witness
 from verifier.topology.claims.over_boxes import covered_by_proof
 from verifier.topology.claims.over_controls import judged_over
-from verifier.topology.claims.watching import Progress, Watch, in_silence
+from verifier.topology.claims.watching import Watch
 from verifier.topology.features import Settings
 from verifier.topology.scenes import Scenes
 from verifier.topology.slices import SliceError

@@ -3,15 +3,8 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
-Progress: TypeAlias = Callable[[str, int, int], None]
-"""Told what is being done, how much is done, and of how much."""
-
 Watch: TypeAlias = Callable[[float], None]
 """Told which share of one claim's work is done."""
-
-
-def in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody waits for the claims."""
 
 
 def unwatched(_share: float) -> None:
