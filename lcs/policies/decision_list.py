@@ -80,6 +80,14 @@ class DecisionList:
         """All but one of its rules."""
         return self.in_order(np.delete(np.arange(len(self)), rule))
 
+    def closed(self) -> "DecisionList":
+        """The same decisions without the rules from one on that always holds."""
+        asks = np.isfinite(self.lower).any(axis=1) | np.isfinite(self.upper).any(axis=1)
+        if asks.all():
+            return self
+        last = int(asks.argmin())
+        return replace(self.in_order(np.arange(last)), otherwise=int(self.action[last]))
+
     def with_rule(self, place: int, action: int, lower: Array, upper: Array) -> "DecisionList":
         """The list with one rule more, before the one at this place; its bounds (n,)."""
         return replace(

@@ -78,21 +78,21 @@ def _head(trained: Trained) -> str:
     steps = f"{counted(course.episodes, 'episode')}, {last.decisions + last.raced:,} decisions"
     lived = f"lived {steps}, in {counted(count, 'generation')}{_ending(trained)}"
     worlds = counted(LAST * settings.tried_in, "world")
-    best = f"the best list of all ran in {worlds} more, to be made plainer"
     head = f"{trained.scenario.name}: {settings.learner} learnt how {trains} decides"
-    return "\n".join([head, wrapped(lived), wrapped(f"{best}: {_plainer(trained)}")])
+    return "\n".join([head, wrapped(lived), wrapped(_plainer(trained, worlds))])
 
 
-def _plainer(trained: Trained) -> str:
+def _plainer(trained: Trained, worlds: str) -> str:
     """What was given up of the best list, and what that cost where it was tried."""
     was, now, kept = trained.best.rules, trained.kept.rules, trained.kept
     if (len(was), was.conditions) == (len(now), now.conditions):
-        return "nothing could be given up"
+        return f"the best list was tried in {worlds} more, and nothing of it could be given up"
     few = f"{counted(len(now), 'rule')} with {counted(now.conditions, 'condition')}"
     return (
-        f"{few} instead of {len(was)} with {was.conditions}, "
-        f"success {percent(kept.trial.success)} instead of {percent(kept.before.success)}, "
-        f"reward {number(kept.trial.reward)} instead of {number(kept.before.reward)}"
+        f"the best list was made plain by trials in {worlds} more: {few} instead of {len(was)} "
+        f"with {was.conditions}; there it succeeds in {percent(kept.trial.success)} instead of "
+        f"{percent(kept.before.success)}, with a reward of {number(kept.trial.reward)} instead of "
+        f"{number(kept.before.reward)}"
     )
 
 

@@ -76,7 +76,8 @@ def compacted(best: Racer, trials: Trials) -> Racer:
     for changes in (_wider, _rounder):
         for change in _rarest_first(now, changes(now.rules)):
             now = trials.better(now, change)
-    return trials.better(_without_rules(now, trials), _shorter(now))
+    now = trials.better(_without_rules(now, trials), DecisionList.closed)
+    return trials.better(now, _shorter(now))
 
 
 def touched(rules: DecisionList, now: Racer) -> int:

@@ -57,6 +57,17 @@ def test_conditions_and_digits_go_that_trials_do_not_need(pen: Scenario) -> None
     assert plain.standing[0] == 1.0
 
 
+def test_nothing_stands_behind_a_rule_that_always_holds() -> None:
+    rules = CAREFUL.with_rule(1, TURN, -FREE, FREE).with_rule(2, GO, -FREE, NEAR)
+    places = np.linspace(0.0, 2.0, 50)[:, None]
+
+    closed = rules.closed()
+    assert closed.upper.tolist() == CAREFUL.upper.tolist()
+    assert closed.otherwise == TURN
+    assert (closed.decide(places) == rules.decide(places)).all()
+    assert CAREFUL.closed() is CAREFUL
+
+
 def test_what_trials_need_stays(pen: Scenario) -> None:
     plain, before = compacted_alone(always(GO, 1).with_rule(0, TURN, -FREE, np.array([0.6])), pen)
 
