@@ -1,7 +1,7 @@
 """Bounds of few digits: the shortest decimal number between two others."""
 
 import math
-from decimal import ROUND_CEILING, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 
 def shortest_between(low: float, high: float, near: float) -> float:
@@ -21,6 +21,16 @@ def shortest_between(low: float, high: float, near: float) -> float:
             k = min(max(round(near / 10.0**exponent), first), last)
             return min(max(float(f"{k}e{exponent}"), low), high)
     return high
+
+
+def of_digits(value: float, digits: int, *, up: bool) -> float:
+    """The nearest number of so many digits that is not below a value, or that is not above it.
+
+    >>> of_digits(2.9999, 2, up=False), of_digits(2.9999, 1, up=True), of_digits(0.3, 2, up=True)
+    (2.9, 3.0, 0.3)
+    """
+    rounding = ROUND_CEILING if up else ROUND_FLOOR
+    return float(Context(prec=digits, rounding=rounding).create_decimal(repr(value)))
 
 
 def _ceiling(value: float, exponent: int) -> int:

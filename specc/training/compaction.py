@@ -15,6 +15,7 @@ import numpy as np
 
 from lcs.policies.decision_list import DecisionList
 from lcs.policies.shortened import shortened
+from lcs.rules.digits import of_digits
 from runtime.progress import Progress
 from specc.training.race import SHARES, Racer, heat
 from specc.training.workers import Workers
@@ -105,10 +106,20 @@ def _wider(rules: DecisionList) -> Iterator[Change]:
 
 
 def _rounder(rules: DecisionList) -> Iterator[Change]:
-    """Each of its bounds in few digits."""
-    for rule, i, side, value in rules.bounds():
+    """Each of its bounds in few digits, a little lower or higher."""
+    for rule, i, side, _ in rules.bounds():
         for digits in DIGITS:
-            yield methodcaller("with_bound", rule, i, side, float(f"{value:.{digits}g}"))
+            for up in (False, True):
+                yield partial(_rounded, bound=(rule, i, side), digits=digits, up=up)
+
+
+def _rounded(
+    rules: DecisionList, *, bound: tuple[int, int, str], digits: int, up: bool
+) -> DecisionList:
+    """With one of its bounds in so many digits; as it is where that has no more."""
+    rule, i, side = bound
+    value = float(getattr(rules, side)[rule, i])
+    return rules.with_bound(rule, i, side, of_digits(value, digits, up=up))
 
 
 def _rarest_first(now: Racer, changes: Iterator[Change]) -> list[Change]:
