@@ -88,8 +88,8 @@ PLATES: Final = (
           "A round one that moves at random does not: a wall holds it for 1.3 s at most.",
           "simulate", "--poster"),
     Plate("errand_learned", "specs/scenarios/errand_learned.yaml --seed 1003 -d '56 s'",
-          "An errand by learned rules: to the charger first, along the wall until the lamp is seen, "
-          "and to it.", "simulate", "--poster"),
+          "An errand by learned rules: to the charger first, along the wall until the lamp is "
+          "seen, and to it.", "simulate", "--poster"),
     Plate("errand_regions", "specs/arbiters/errand_learned.yaml --axes left,right "
           "--sweep used=0.05,0.5 --at dock=1 --at lamp=0 --at ahead=0.9 --at dock_distance=1.2",
           "What these rules decide where the dock is seen: turn away from what is near on the "

@@ -3,18 +3,14 @@
 from pathlib import Path
 
 from runtime.program import Program
-from runtime.progress import Progress
+from runtime.progress import Progress, in_silence
 from specc.loading import as_program
 from verifier.topology.claims.findings import Finding
 from verifier.topology.claims.judge import judge
 
 
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
-
-
 def check_claims(
-    spec: Program | Path | str, progress: Progress = _in_silence
+    spec: Program | Path | str, progress: Progress = in_silence
 ) -> tuple[Finding, ...]:
     """What is found of each claim under `expect:`: proved, holds, refuted or undecided.
 

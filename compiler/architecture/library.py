@@ -12,6 +12,7 @@ from compiler.compile import compile_loaded
 from compiler.findings import Findings
 from runtime.arbiter import Arbiter
 from runtime.program import Program
+from runtime.progress import in_silence
 from spec_schema.behavior import BehaviorSpec
 from spec_schema.diagnostics import Diagnostic, Severity, SpecError
 from spec_schema.field_forms import Arrows, Form
@@ -53,7 +54,7 @@ def checked_only(loaded: Loaded, spec: BehaviorSpec) -> Behavior:
         SpecError: with everything that is wrong with it.
     """
     if _is_quickly_filled(spec.field.form):
-        filled = compile_loaded(loaded, _in_silence)
+        filled = compile_loaded(loaded, in_silence)
         return Behavior(filled.program, filled.warnings)
     checked = check_behavior(loaded, spec)
     if checked.findings.has_errors:
@@ -64,10 +65,6 @@ def checked_only(loaded: Loaded, spec: BehaviorSpec) -> Behavior:
 def _is_quickly_filled(form: Form) -> bool:
     """Whether the tables of a field take a fraction of a second, as in a plane they do."""
     return isinstance(form, Arrows) and len(form.over) <= QUICK
-
-
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody waits for what is made in no time."""
 
 
 @final

@@ -131,7 +131,7 @@ def train(
     The scenario says under `train` which arbiter learns, and what its decisions are rewarded for.
     Episodes run in worlds at random. After some, all that was lived is learnt from anew. What comes
     out races with the best list so far, and with lists like that, in worlds that none of them has
-    seen. The best of all generations is judged in worlds held out.
+    seen. The best of all generations is made plain by trials, and judged in worlds held out.
 
     The result is the arbiter's own YAML with a short list of rules in it: in FOLDER, and with
     --write in its place. All else in the file stays.
@@ -208,9 +208,9 @@ def _told_again(
 
     say(f"this training is finished; its results are in {folder}", "bold")
     if given.form is Format.JSON:
-        print_json(json.loads((folder / RECORD).read_text()))
+        print_json(json.loads((folder / RECORD).read_text(encoding="utf-8")))
     else:
-        print_text((folder / SUMMARY).read_text().rstrip("\n"))
+        print_text((folder / SUMMARY).read_text(encoding="utf-8").rstrip("\n"))
     if given.writes:
         edited = kept_text(folder, scenario, text.source, learner)
         say(f"wrote the rules into {write_in_place(text.source, edited)}", "bold")

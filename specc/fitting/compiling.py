@@ -2,6 +2,7 @@
 
 from compiler.compile import compile_loaded
 from runtime.program import Program
+from runtime.progress import in_silence
 from spec_schema.diagnostics import SpecError
 from spec_schema.load import Loaded, load_source
 from spec_schema.source import Source
@@ -17,13 +18,9 @@ def compiled(source: Source) -> tuple[Loaded, Program]:
     """
     try:
         loaded = load_source(source)
-        return loaded, compile_loaded(loaded, _in_silence, faults_of).program
+        return loaded, compile_loaded(loaded, in_silence, faults_of).program
     except SpecError as error:
         first = error.diagnostics[0]
         message = f"with the robot's numbers the spec can't be compiled: {first.message}"
         remedy = f"at {first.path}: {first.help}" if first.help else f"look at {first.path}"
         raise fault("V373", source.name, message, f"{remedy}; nothing was written") from error
-
-
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""

@@ -35,8 +35,8 @@ def generation_text(course: Course, worlds: int) -> str:
     return (
         f"generation {len(course.generations)}: {who} is best, with success in "
         f"{percent(last.tried.success)} of {counted(worlds, 'world')} and reward "
-        f"{number(last.tried.reward)}; {counted(course.episodes, 'episode')} so far, "
-        f"{took:,.0f} s for these"
+        f"{number(last.tried.reward)}; {counted(course.episodes, 'episode')} so far; "
+        f"this one took {took:,.0f} s"
     )
 
 
@@ -86,7 +86,11 @@ def _plainer(trained: Trained, worlds: str) -> str:
     """What was given up of the best list, and what that cost where it was tried."""
     was, now, kept = trained.best.rules, trained.kept.rules, trained.kept
     if (len(was), was.conditions) == (len(now), now.conditions):
-        return f"the best list was tried in {worlds} more, and nothing of it could be given up"
+        return (
+            f"the best list was tried in {worlds} more, and no rule or condition of it could be "
+            f"given up; there it succeeds in {percent(kept.trial.success)}, with a reward of "
+            f"{number(kept.trial.reward)}"
+        )
     few = f"{counted(len(now), 'rule')} with {counted(now.conditions, 'condition')}"
     return (
         f"the best list was made plain by trials in {worlds} more: {few} instead of {len(was)} "
@@ -173,7 +177,7 @@ def _speed_rows(shares: Shares) -> list[tuple[str, str]]:
     )
     bare = f"{shares.per_second_bare:,.0f} decisions a second: the same commands, and nothing else"
     return [
-        ("time", f"{shares.seconds:,.1f} s on {processes}"),
+        ("generations", f"{shares.seconds:,.1f} s on {processes}"),
         ("speed", f"{shares.per_second:,.0f} decisions a second"),
         ("the world alone", f"{bare}, on one process"),
         ("shares", ", ".join(f"{what} {100 * share:.0f} %" for what, share in parts)),

@@ -6,13 +6,14 @@ the list would live anything else than it did.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from operator import methodcaller
 from typing import Final, TypeAlias, final
 
 import numpy as np
 
+from lcs.arrays import Array, Integers
 from lcs.policies.decision_list import DecisionList
 from lcs.policies.shortened import shortened
 from lcs.rules.digits import of_digits
@@ -26,6 +27,9 @@ one that matters more often is hardly needless, and takes long to try."""
 DIGITS: Final = 1, 2
 """Digits that bounds are rounded to."""
 
+ROUNDING: Final = 1e-9
+"""Of a reward: sums of the same numbers differ by less."""
+
 Change: TypeAlias = Callable[[DecisionList], DecisionList]
 
 
@@ -38,8 +42,8 @@ class Trials:
     workers: Workers
     tell: Progress
 
-    def better(self, now: Racer, change: Change) -> Racer:
-        """The changed list if it succeeds as often, else the one as it is.
+    def unless_worse(self, now: Racer, change: Change, floor: float) -> Racer:
+        """The changed list, unless it succeeds less often or has less reward than `floor`.
 
         Raises:
             NoRoomError, UserCodeError, SpecError: as `Workers.lived`.
@@ -58,13 +62,15 @@ class Trials:
             heat([changed], now, more, self.workers, told)
             if Racer(now.rules, now.episodes[:upto]).beats(changed):
                 return now
-        return changed if changed.standing[0] >= now.standing[0] else now
+        success, reward = changed.standing
+        return changed if success >= now.standing[0] and reward >= floor else now
 
 
 def compacted(best: Racer, trials: Trials) -> Racer:
     """The list without the rules, conditions and digits without which it succeeds as often.
 
-    What matters in the fewest worlds goes first: in all others the list lives as before.
+    What matters in the fewest worlds goes first: in all others the list lives as before. Its reward
+    stays within a standard error of what it was.
 
     Args:
         best: a list that has its episodes in all worlds of the trials.
@@ -73,26 +79,39 @@ def compacted(best: Racer, trials: Trials) -> Racer:
     Raises:
         NoRoomError, UserCodeError, SpecError: as `Workers.lived`.
     """
-    now = _without_rules(best, trials)
+    floor = _floor(best)
+    now = _without_rules(best, trials, floor)
     for changes in (_wider, _rounder):
         for change in _rarest_first(now, changes(now.rules)):
-            now = trials.better(now, change)
-    now = trials.better(_without_rules(now, trials), DecisionList.closed)
-    return trials.better(now, _shorter(now))
+            now = trials.unless_worse(now, change, floor)
+    now = _without_rules(now, trials, floor)
+    for change in (_shorter(now), DecisionList.closed):
+        now = trials.unless_worse(now, change, floor)
+    return now
+
+
+def _floor(best: Racer) -> float:
+    """The mean reward less its standard error, and less what sums of many numbers err by."""
+    total = np.array([each.total for each in best.episodes])
+    error = total.std() / np.sqrt(len(total))
+    return float(total.mean() - error - ROUNDING * np.abs(total).max())
 
 
 def touched(rules: DecisionList, now: Racer) -> int:
     """In how many worlds a list would live anything else than one that ran there."""
-    other = Racer(rules)
-    return sum(not other.would_live(each, now.rules) for each in now.episodes)
+    places = np.concatenate([each.places for each in now.episodes])
+    differs = rules.decide(places) != now.rules.decide(places)
+    counts = [len(each.places) for each in now.episodes]
+    starts = np.cumsum([0, *counts[:-1]])
+    return int(np.logical_or.reduceat(differs, starts).sum())
 
 
-def _without_rules(now: Racer, trials: Trials) -> Racer:
+def _without_rules(now: Racer, trials: Trials, floor: float) -> Racer:
     """The list without its needless rules, each of which is tried once."""
     left = list(range(len(now.rules)))
     rare = sorted(left, key=lambda rule: touched(now.rules.without(rule), now))
     for rule in rare:
-        fewer = trials.better(now, methodcaller("without", left.index(rule)))
+        fewer = trials.unless_worse(now, methodcaller("without", left.index(rule)), floor)
         if fewer is not now:
             now = fewer
             left.remove(rule)
@@ -128,5 +147,19 @@ def _rarest_first(now: Racer, changes: Iterator[Change]) -> list[Change]:
 
 def _shorter(now: Racer) -> Change:
     """Bounds of as few digits as leave each decision that it took as it is."""
-    places = np.concatenate([each.steps.x for each in now.episodes])
-    return partial(shortened, x=places)
+    places = np.concatenate([each.places for each in now.episodes])
+    return partial(_shortened, places=places)
+
+
+def _shortened(rules: DecisionList, places: Array) -> DecisionList:
+    """With a shorter bound wherever there is one."""
+    short = shortened(rules, places)
+    pairs = (short.lower, rules.lower), (short.upper, rules.upper)
+    lower, upper = (np.where(_digits(new) < _digits(old), new, old) for new, old in pairs)
+    return replace(rules, lower=lower, upper=upper)
+
+
+def _digits(bounds: Array) -> Integers:
+    """How long each is when it is written; 0 of one that asks for nothing."""
+    lengths = [len(repr(bound)) if np.isfinite(bound) else 0 for bound in bounds.ravel().tolist()]
+    return np.array(lengths, np.int64).reshape(bounds.shape)

@@ -62,6 +62,11 @@ class Episode:
     rewarding: float
 
     @property
+    def places(self) -> Array:
+        """All that was read in it (D + 1, m): at each decision, and where the last one led."""
+        return np.concatenate([self.steps.x, self.steps.after[-1:]])
+
+    @property
     def succeeded(self) -> bool:
         """Whether all that is required is satisfied."""
         return all(outcome is Outcome.SATISFIED for outcome in self.outcomes)

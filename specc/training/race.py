@@ -42,8 +42,8 @@ class Racer:
 
     def would_live(self, episode: Episode, by: DecisionList) -> bool:
         """Whether it would live an episode that another list lived: it decides alike all along."""
-        places = np.concatenate([episode.steps.x, episode.steps.after[-1:]])
-        return bool((self.rules.decide(places) == by.decide(places)).all())
+        own, its = self.rules.decide(episode.places), by.decide(episode.places)
+        return bool((own == its).all())
 
     @property
     def standing(self) -> tuple[float, float]:

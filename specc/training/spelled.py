@@ -10,10 +10,11 @@ from lcs.policies.decision_list import DecisionList
 from lcs.rules.digits import just_below
 from runtime.arbiter import Arbiter, Read
 from runtime.program import Kind
+from spec_schema.arbiter import ArbiterSpec, LearnedRuleSpec, LearnedSpec
 from spec_schema.editing.edits import Edit, NewLines, NewText
 from spec_schema.editing.in_place import edited
 from spec_schema.load import Loaded
-from spec_schema.node import Mapping, Node, Plain, plain
+from spec_schema.node import Mapping, Node, Plain
 from spec_schema.scalars import resolve
 from spec_schema.source import Source
 from spec_schema.yaml_reader import read
@@ -55,14 +56,10 @@ def with_spelled(source: Source, learner: str, rules: Spelled) -> Source:
     return edited(source, tuple(_edits(_value(read(source), "by"), learner, rules)))
 
 
-def spelled_in(source: Source, learner: str) -> Spelled:
-    """What stands in a text that `with_rules` made."""
-    own = plain(_value(_value(read(source), "by"), learner))
-    assert isinstance(own, dict), "the language refuses all else"
-    otherwise, rules = own["otherwise"], own["rules"]
-    assert isinstance(otherwise, str), "the language refuses all else"
-    assert isinstance(rules, list), "the language refuses all else"
-    return Spelled(otherwise, tuple(rule for rule in rules if isinstance(rule, dict)))
+def spelled_in(spec: ArbiterSpec, learned: LearnedSpec) -> Spelled:
+    """What an arbiter says that it learned."""
+    otherwise = learned.otherwise or spec.choices[0]
+    return Spelled(otherwise, tuple(_said(rule) for rule in learned.rules))
 
 
 def condition(rules: DecisionList, rule: int, reads: Sequence[Read]) -> str:
@@ -106,6 +103,11 @@ def _spelled(arbiter: Arbiter, rules: DecisionList) -> Spelled:
     return Spelled(
         arbiter.choices[rules.otherwise], tuple(_rule(arbiter, rules, r) for r in range(len(rules)))
     )
+
+
+def _said(rule: LearnedRuleSpec) -> dict[str, Plain]:
+    said: dict[str, Plain] = {"choose": rule.choose, "right": rule.right, "wrong": rule.wrong}
+    return said if rule.when is None else {**said, "when": str(rule.when)}
 
 
 def _rule(arbiter: Arbiter, rules: DecisionList, rule: int) -> dict[str, Plain]:

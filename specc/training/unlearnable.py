@@ -12,7 +12,9 @@ from specc.training.episode import Episode, training_of
 FINITE: Final = "let the reward, and each reading, be a number everywhere: divide by nothing that \
 can be 0, and bound what can grow without end"
 
-BEGINS: Final = "let `ends_when` be false where a run begins; and let a decision be due more often"
+BEGINS: Final = "let `ends_when` be false where a run begins"
+SOON: Final = 2.5
+"""Steps of the world: the first after a decision is the second."""
 
 
 @contextmanager
@@ -30,11 +32,12 @@ def told_unlearnable(scenario: Scenario) -> Iterator[None]:
 
 
 def refuse_decided(scenario: Scenario, episodes: Sequence[Episode]) -> None:
-    """Stop where all episodes are over as soon as they begin.
+    """Stop where all episodes are over before a choice can have effect.
 
     Raises:
         SpecError: they are (V418).
     """
-    if all(len(each.steps) <= 1 and each.steps.ends.all() for each in episodes):
-        message = f"each of {len(episodes)} episodes ended with its first decision"
+    soon = SOON * scenario.step
+    if all(each.steps.ends[-1:].all() and each.seconds <= soon for each in episodes):
+        message = f"each of {len(episodes)} episodes was over as it began"
         raise fault("V418", scenario.source.file, message, BEGINS)

@@ -7,8 +7,10 @@ import numpy as np
 
 from runtime.progress import Progress
 from runtime.scenario import Scenario
+from spec_schema.arbiter import ArbiterSpec
 from spec_schema.load import load
 from spec_schema.source import Source
+from specc.faults import fault
 from specc.figures.palettes import PALETTES
 from specc.figures.style import Picture, rendered
 from specc.figures.style_names import Style
@@ -52,10 +54,15 @@ def kept_text(folder: Path, scenario: Scenario, now: Source, learner: str) -> So
     """The arbiter's own text as it is now, with the rules of a training that is finished.
 
     Raises:
-        SpecError: what is kept can't be read.
+        SpecError: what is kept is wrong, or holds nothing that was learnt (V412).
     """
-    kept = load(folder / arbiter_name(scenario)).source
-    return with_spelled(now, learner, spelled_in(kept, learner))
+    path = folder / arbiter_name(scenario)
+    spec = load(path).spec
+    learned = getattr(spec.by, learner) if isinstance(spec, ArbiterSpec) else None
+    if not isinstance(spec, ArbiterSpec) or learned is None:
+        message = f"this is not what the training left: it has nothing that {learner} learnt"
+        raise fault("V412", path, message, "put it back; or train again in another folder")
+    return with_spelled(now, learner, spelled_in(spec, learned))
 
 
 def _files(trained: Trained, style: Style) -> Iterator[tuple[str, bytes]]:

@@ -92,6 +92,28 @@ def test_a_finished_training_is_told_again_and_lives_nothing(
     assert Path("choose.yaml").read_text() == learnt.replace("acts in the pen.", "acts there.")
 
 
+def test_of_a_finished_training_only_what_was_learnt_is_written(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    out = begun(held_out=0)
+    assert main(RESUME) == 0
+    learnt, before = (out / "choose.yaml").read_text(), Path("choose.yaml").read_text()
+
+    by_hand = FILES["choose.yaml"].replace("alcsr: {}", "rules: [{choose: go}]")
+    (out / "choose.yaml").write_text(by_hand)
+    assert main([*RESUME, "--write"]) == 2
+    assert "choose.yaml: error[V412]: this is not what the training left" in capsys.readouterr().err
+    assert Path("choose.yaml").read_text() == before
+
+    (out / "choose.yaml").write_text(learnt.replace(", wrong: 0", ""))
+    assert main([*RESUME, "--write"]) == 0
+    assert Path("choose.yaml").read_text() == learnt
+
+    (out / "curves.svg").unlink()
+    assert main(RESUME) == 0
+    assert (out / "curves.svg").exists()
+
+
 def test_an_arbiter_that_had_rules_is_judged_beside(capsys: pytest.CaptureFixture[str]) -> None:
     path = written_in(Path())
     rules = "alcsr: {otherwise: turn, rules: [{choose: go, when: ahead > 0.5}]}"
@@ -243,7 +265,7 @@ def test_episodes_that_are_over_as_they_begin_are_refused(
 
     assert main(["train", "pen.yaml", "-n", "6"]) == 2
     told = capsys.readouterr().err
-    assert "pen.yaml: error[V418]: each of 2 episodes ended with its first decision" in told
+    assert "pen.yaml: error[V418]: each of 2 episodes was over as it began" in told
 
 
 def test_what_is_resumed_is_not_said_anew(capsys: pytest.CaptureFixture[str]) -> None:

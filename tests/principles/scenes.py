@@ -9,6 +9,7 @@ import numpy as np
 
 from compiler.world.scenario import CompiledScenario, compile_scenario
 from runtime.arrays import Array
+from runtime.progress import in_silence
 from runtime.scenario import Scenario
 from runtime.scheduler.observer import Observer
 from runtime.start import started
@@ -131,15 +132,11 @@ def _compiled(files: tuple[tuple[str, str], ...], text: str) -> CompiledScenario
     with tempfile.TemporaryDirectory() as folder:
         for name, content in (*behaviors, *files, ("scene.yaml", text)):
             (Path(folder) / name).write_text(content, encoding="utf-8")
-        return compile_scenario(Path(folder) / "scene.yaml", _in_silence)
+        return compile_scenario(Path(folder) / "scene.yaml", in_silence)
 
 
 def _headed(kind: str, name: str, text: str) -> str:
     return f"specc: 1\nkind: {kind}\nname: {name}\n{text}"
-
-
-def _in_silence(_what: str, _done: int, _of: int) -> None:
-    """Nobody watches."""
 
 
 class Started:

@@ -1,8 +1,10 @@
 """The best list made plainer: what goes, what stays, and that trials decide."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lcs.policies.decision_list import DecisionList, always
@@ -68,6 +70,40 @@ def test_nothing_stands_behind_a_rule_that_always_holds() -> None:
     assert CAREFUL.closed() is CAREFUL
 
 
+def test_a_bound_in_few_digits_stays_as_it_is(pen: Scenario) -> None:
+    """It might be moved into the middle of the gap that it ends."""
+    with Workers(pen, 1) as workers:
+        careful = tried(CAREFUL.with_bound(0, 0, "upper", 0.6), workers)
+    read = np.unique(np.concatenate([each.places for each in careful.episodes]))
+    beside = float(f"{read[read < 0.6].max() + 1e-6:.6f}")
+    rules = careful.rules.with_bound(0, 0, "upper", beside)
+
+    plain, before = compacted_alone(rules, pen)
+    assert len(repr(plain.rules.upper.item())) <= len(repr(beside))
+    assert before.rules is rules
+
+
+def test_reward_is_not_given_up_where_nothing_is_required(pen: Scenario) -> None:
+    free = replace(pen, requirements=())
+    plain, before = compacted_alone(CAREFUL, free)
+
+    total = np.array([each.total for each in before.episodes])
+    assert before.standing[0] == plain.standing[0] == 1.0
+    assert plain.standing[1] >= total.mean() - total.std() / np.sqrt(len(total)) - 1e-6
+    assert len(plain.rules) == 1
+
+
+def test_what_matters_in_many_worlds_is_not_tried(pen: Scenario) -> None:
+    told: list[object] = []
+    with Workers(pen, 1) as workers:
+        careful = tried(CAREFUL, workers)
+        trials = Trials(WORLDS, workers, lambda *of: told.append(of))
+        same = trials.unless_worse(careful, lambda _: always(TURN, 1), -np.inf)
+
+    assert same is careful
+    assert not told
+
+
 def test_what_trials_need_stays(pen: Scenario) -> None:
     plain, before = compacted_alone(always(GO, 1).with_rule(0, TURN, -FREE, np.array([0.6])), pen)
 
@@ -88,7 +124,7 @@ def test_who_lives_anything_else_is_known_without_living_it(pen: Scenario) -> No
     actions=st.lists(st.sampled_from([GO, TURN]), min_size=1, max_size=4),
     data=st.data(),
 )
-@settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=10)
 def test_compaction_gives_up_no_success(
     actions: list[int], data: st.DataObject, pen: Scenario
 ) -> None:
@@ -99,5 +135,7 @@ def test_compaction_gives_up_no_success(
     plain, before = compacted_alone(rules, pen)
 
     assert plain.standing[0] >= before.standing[0]
+    assert plain.rules.conditions == len(list(plain.rules.bounds()))
+    assert all(rule.conditions for rule in map(plain.rules.in_order, np.eye(len(plain.rules)) > 0))
     assert len(plain.rules) <= len(before.rules)
     assert plain.rules.conditions <= before.rules.conditions
