@@ -27,8 +27,8 @@ class Improving:
 
     episodes: after how many. explored, tried: rewards of an episode, on average.
     explored_success, tried_success: shares; low, high: the interval of the latter. best: which
-    generation was kept. final: its reward and success where it was made plain. worlds: how many each
-    policy was tried in.
+    generation was kept. final: its reward and success where it was made plain. worlds: how many
+    each policy was tried in.
     """
 
     episodes: Integers
@@ -78,7 +78,8 @@ def draw_training(
 
 def _kept(one: Improving) -> str:
     reward, success = one.final
-    return f"what is kept, in the worlds\nwhere it was made plain:\nreward {number(reward)}, success {success:.0%}"
+    did = f"reward {number(reward)}, success {success:.0%}"
+    return f"what is kept, in the worlds\nwhere it was made plain:\n{did}"
 
 
 def _draw(
