@@ -80,6 +80,10 @@ class DecisionList:
         """All but one of its rules."""
         return self.in_order(np.delete(np.arange(len(self)), rule))
 
+    def without_bound(self, rule: int, i: int, side: str) -> "DecisionList":
+        """The list without the `lower` or `upper` bound of a rule in input i."""
+        return self.with_bound(rule, i, side, -np.inf if side == "lower" else np.inf)
+
     def closed(self) -> "DecisionList":
         """The same decisions without the rules from one on that always holds."""
         asks = np.isfinite(self.lower).any(axis=1) | np.isfinite(self.upper).any(axis=1)

@@ -2,8 +2,6 @@
 
 from typing import Final
 
-import numpy as np
-
 from lcs.policies.decision_list import DecisionList
 from lcs.policies.weighed import Weighed
 
@@ -50,7 +48,7 @@ def _without_conditions(now: Weighed, least: float) -> Weighed:
 def widened(now: Weighed, rule: int, least: float) -> Weighed:
     """The list without the conditions of one rule that save no more than `least`, each alone."""
     for i, side, _ in list(now.rules.bounds_of(rule)):
-        wider = now.rules.with_bound(rule, i, side, -np.inf if side == "lower" else np.inf)
+        wider = now.rules.without_bound(rule, i, side)
         if now.costs(wider, rule) <= least:
             now = now.instead(wider)
     return now

@@ -63,7 +63,7 @@ class Variation:
         side, found = self._some_bound(rules)
         if found is None:
             return rules
-        return rules.with_bound(*found, side, -np.inf if side == "lower" else np.inf)
+        return rules.without_bound(*found, side)
 
     def fewer(self, rules: DecisionList) -> DecisionList:
         """A rule goes."""

@@ -18,7 +18,7 @@ from lcs.policies.decision_list import DecisionList
 from lcs.policies.shortened import shortened
 from lcs.rules.digits import of_digits
 from runtime.progress import Progress
-from specc.training.race import SHARES, Racer, heat
+from specc.training.race import Racer, heat, heats, would_live
 from specc.training.workers import Workers
 
 RARE: Final = 0.4
@@ -56,8 +56,7 @@ class Trials:
         changed = Racer(change(now.rules))
         if touched(changed.rules, now) > RARE * len(self.worlds):
             return now
-        for share in SHARES:
-            upto = max(round(share * len(self.worlds)), 1)
+        for upto in heats(len(self.worlds)):
             more = self.worlds[len(changed.episodes) : upto]
             heat([changed], now, more, self.workers, told)
             if Racer(now.rules, now.episodes[:upto]).beats(changed):
@@ -99,11 +98,7 @@ def _floor(best: Racer) -> float:
 
 def touched(rules: DecisionList, now: Racer) -> int:
     """In how many worlds a list would live anything else than one that ran there."""
-    places = np.concatenate([each.places for each in now.episodes])
-    differs = rules.decide(places) != now.rules.decide(places)
-    counts = [len(each.places) for each in now.episodes]
-    starts = np.cumsum([0, *counts[:-1]])
-    return int(np.logical_or.reduceat(differs, starts).sum())
+    return would_live(rules, now.episodes, now.rules).count(False)
 
 
 def _without_rules(now: Racer, trials: Trials, floor: float) -> Racer:
@@ -121,7 +116,7 @@ def _without_rules(now: Racer, trials: Trials, floor: float) -> Racer:
 def _wider(rules: DecisionList) -> Iterator[Change]:
     """Each of its bounds gone."""
     for rule, i, side, _ in rules.bounds():
-        yield methodcaller("with_bound", rule, i, side, -np.inf if side == "lower" else np.inf)
+        yield methodcaller("without_bound", rule, i, side)
 
 
 def _rounder(rules: DecisionList) -> Iterator[Change]:

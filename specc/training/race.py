@@ -40,11 +40,6 @@ class Racer:
             more -= [each.total for each in other.episodes]
         return bool(more.mean() > SURE * more.std() / np.sqrt(len(more)))
 
-    def would_live(self, episode: Episode, by: DecisionList) -> bool:
-        """Whether it would live an episode that another list lived: it decides alike all along."""
-        own, its = self.rules.decide(episode.places), by.decide(episode.places)
-        return bool((own == its).all())
-
     @property
     def standing(self) -> tuple[float, float]:
         """The share of worlds where all that is required was satisfied, then the mean reward."""
@@ -96,8 +91,7 @@ def raced(
     running = [Racer(rules) for rules in challengers]
     lived: list[Episode] = []
     done = 0
-    for number, share in enumerate(SHARES):
-        upto = max(round(share * len(worlds)), 1)
+    for number, upto in enumerate(heats(len(worlds))):
         if number:
             running = _fastest(running, LEFT[number - 1])
         if holder is not None:
@@ -106,6 +100,11 @@ def raced(
         done = upto
     best = max(running, key=lambda racer: racer.standing)
     return Race(best, holder, tuple(lived))
+
+
+def heats(worlds: int) -> list[int]:
+    """In how many of so many worlds lists have been tried after each heat."""
+    return [max(round(share * worlds), 1) for share in SHARES]
 
 
 def heat(
@@ -137,7 +136,19 @@ def _shared(racer: Racer, holder: Racer | None, known: Sequence[Episode], count:
     """In which of so many worlds it would live what is known of the one that holds the title."""
     if holder is None:
         return [False] * count
-    return [racer.would_live(each, holder.rules) for each in known]
+    return would_live(racer.rules, known, holder.rules)
+
+
+def would_live(rules: DecisionList, episodes: Sequence[Episode], by: DecisionList) -> list[bool]:
+    """Which episodes that one list lived another would live, too: it decides alike all along."""
+    if not episodes:
+        return []
+    each = [episode.places for episode in episodes]
+    places, starts = np.concatenate(each), np.cumsum([0, *map(len, each[:-1])])
+    alike: list[bool] = np.logical_and.reduceat(
+        rules.decide(places) == by.decide(places), starts
+    ).tolist()
+    return alike
 
 
 def _fastest(running: Sequence[Racer], left: int) -> list[Racer]:
