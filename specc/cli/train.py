@@ -282,7 +282,10 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
 
 def _stopped(begun: "Begun", kept: "Course", folder: Path | None) -> Status:
     """Say how far it came with whole generations, and how it goes on."""
-    say(f"interrupted after {kept.episodes:,} of {begun.settings.episodes:,} episodes", "bold")
+    if kept.is_over(begun.settings):
+        say(f"interrupted in the end, after all {kept.episodes:,} episodes", "bold")
+    else:
+        say(f"interrupted after {kept.episodes:,} of {begun.settings.episodes:,} episodes", "bold")
     if folder is None:
         say("nothing was kept, since no folder was named: -o FOLDER")
     else:

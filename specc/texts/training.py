@@ -9,7 +9,7 @@ from specc.training.course import Course
 from specc.training.episode import training_of
 from specc.training.judging import CONFIDENCE, Judged
 from specc.training.last_race import LAST
-from specc.training.result import Trained
+from specc.training.result import Ended, Trained
 from specc.training.speed import Shares, shares_of
 from verifier.report.layout import INDENT, bullets, section, table, wrapped
 from verifier.report.wording import number, percent
@@ -68,6 +68,7 @@ def training_record(trained: Trained) -> dict[str, Any]:
         "confidence": CONFIDENCE,
         "compaction": _compaction_record(trained),
         "speed": asdict(shares_of(trained.course, trained.pace, trained.jobs)),
+        "ended": asdict(trained.ended),
     }
 
 
@@ -164,10 +165,10 @@ def _compaction_record(trained: Trained) -> dict[str, Any]:
 
 def _speed_text(trained: Trained) -> str:
     shares = shares_of(trained.course, trained.pace, trained.jobs)
-    return section("what it took", [table(_speed_rows(shares), INDENT)])
+    return section("what it took", [table(_speed_rows(shares, trained.ended), INDENT)])
 
 
-def _speed_rows(shares: Shares) -> list[tuple[str, str]]:
+def _speed_rows(shares: Shares, ended: Ended) -> list[tuple[str, str]]:
     processes = "one process" if shares.jobs == 1 else f"{shares.jobs} processes"
     parts = (
         ("the world", shares.world),
@@ -178,6 +179,8 @@ def _speed_rows(shares: Shares) -> list[tuple[str, str]]:
     bare = f"{shares.per_second_bare:,.0f} decisions a second: the same commands, and nothing else"
     return [
         ("generations", f"{shares.seconds:,.1f} s on {processes}"),
+        ("the last race", f"{ended.racing:,.1f} s, and {ended.plain:,.1f} s of trials"),
+        ("judging", f"{ended.judging:,.1f} s, with learning once more from all that was lived"),
         ("speed", f"{shares.per_second:,.0f} decisions a second"),
         ("the world alone", f"{bare}, on one process"),
         ("shares", ", ".join(f"{what} {100 * share:.0f} %" for what, share in parts)),

@@ -1,5 +1,6 @@
-"""How fast an episode goes, and which part of it is the world's own."""
+"""How fast episodes go, and which part of them is the world's own."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import process_time
 from typing import final
@@ -14,7 +15,7 @@ from specc.training.episode import Task, lived
 @final
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """Of one episode: decisions, and seconds of the processor in each part.
+    """Of some episodes: decisions, and seconds of the processor in each part.
 
     world: physics alone, under the same commands. control: sensors, behaviors, arbiter and
     channels. rewards: starting it, measuring, and working out what decisions were worth.
@@ -42,13 +43,23 @@ class _Commands(LastTicks):
         self.given.append((instant, robot, channels.copy(), driven.copy()))
 
 
-def paced(scenario: Scenario, task: Task) -> Pace:
-    """Live an episode twice, and the world's part of it alone; the first time loads what it needs.
+def paced(scenario: Scenario, tasks: Sequence[Task]) -> Pace:
+    """Live episodes, and the world's part of each alone; the first time loads what they need.
 
     Raises:
-        NoRoomError: there is no room for what is placed at random.
+        NoRoomError, UserCodeError, LearnerError: as `lived`.
     """
-    lived(scenario, task)
+    lived(scenario, tasks[0])
+    every = [_one_paced(scenario, task) for task in tasks]
+    return Pace(
+        decisions=sum(each.decisions for each in every),
+        world=sum(each.world for each in every),
+        control=sum(each.control for each in every),
+        rewards=sum(each.rewards for each in every),
+    )
+
+
+def _one_paced(scenario: Scenario, task: Task) -> Pace:
     heard = _Commands()
     episode = lived(scenario, task, heard)
     instants = round(episode.seconds / scenario.step)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from time import perf_counter
 from typing import Final, final
 
 import numpy as np
@@ -33,6 +34,9 @@ from specc.training.spelled import with_rules
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
 
+PACED: Final = 8
+"""Episodes by which the pace is measured: one alone may be over after a few decisions."""
+
 BY_HAND: Final = "write `by:` with its learner on a line below, as in docs/training.md"
 
 
@@ -47,6 +51,16 @@ class Kept:
 
 
 @final
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """Seconds of the end: for the last race, for making its winner plain, and for judging."""
+
+    racing: float
+    plain: float
+    judging: float
+
+
+@final
 @dataclass(frozen=True, eq=False, slots=True)
 class Trained:
     """What came of a training.
@@ -55,7 +69,7 @@ class Trained:
     arbiter: compiled from the latter; warnings: on the way. course: all generations. best: the one
     whose list won the last race. kept: the rules that were made of that list. table: all rules that
     are learnt from everything, in the first draw. judged: these beside others, where any worlds
-    were held out.
+    were held out. ended: what the end took, by a clock.
     """
 
     begun: Begun
@@ -69,6 +83,7 @@ class Trained:
     kept: Kept
     table: RuleTable
     judged: tuple[Judged, ...]
+    ended: Ended
     pace: Pace
     jobs: int
 
@@ -94,18 +109,23 @@ def concluded(
     Raises:
         NoRoomError, UserCodeError, LearnerError, SpecError: as `go_on`.
     """
+    clock = [perf_counter()]
     race = last_race(course, begun.settings, workers, tell)
+    clock.append(perf_counter())
     plain = compacted(race.winner, Trials(race.worlds, workers, tell))
+    clock.append(perf_counter())
     tell("learning from everything", 0, 1)
     lived = joined((*course.lived, *(each.steps for each in plain.episodes)))
     found = policy_of(lived, scenario, begun.settings, len(course.generations))
     rules, table = found.counted(plain.rules), found.tables[0]
     before = trained_arbiter(scenario)
     beside = judged((rules, table), before, begun.held_out, workers, tell) if begun.held_out else ()
+    clock.append(perf_counter())
     edited = with_rules(loaded, before, begun.settings.learner, rules)
     arbiter, warnings = _compiled(edited)
     tell("measuring the pace", 0, 1)
-    pace = paced(scenario, Task(world(For.CHOOSING, 0), rules, 0.0))
+    seeds = [world(For.CHOOSING, i) for i in range(PACED)]
+    pace = paced(scenario, [Task(seed, rules, 0.0) for seed in seeds])
     return Trained(
         begun=begun,
         scenario=scenario,
@@ -118,6 +138,7 @@ def concluded(
         kept=Kept(rules, trial_of(plain.episodes), trial_of(race.winner.episodes)),
         table=table,
         judged=beside,
+        ended=Ended(*np.diff(clock).tolist()),
         pace=pace,
         jobs=workers.processes,
     )

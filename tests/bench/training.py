@@ -31,25 +31,26 @@ def main() -> None:
     given = parser.parse_args()
     scenario = load_scenario(given.scenario).scenario
     tasks = [Task(world(For.LEARNING, i), AtRandom(), 1.0, i) for i in range(given.episodes)]
-    paces = [paced(scenario, task) for task in tasks]
+    pace = paced(scenario, tasks)
     steps = [lived(scenario, task).steps for task in tasks]
-    decisions = sum(pace.decisions for pace in paces)
     policy_of(steps[0], scenario, Settings(), 0)  # to load kernels is no time of learning
     began = process_time()
     policy_of(joined(steps), scenario, Settings(), 0)
     learning = process_time() - began
     parts = {
-        "the world alone": sum(pace.world for pace in paces),
-        "control": sum(pace.control for pace in paces),
-        "beginning and rewards": sum(pace.rewards for pace in paces),
+        "the world alone": pace.world,
+        "control": pace.control,
+        "beginning and rewards": pace.rewards,
         "learning once": learning,
     }
     total = sum(parts.values())
-    print(f"{scenario.name}: {given.episodes} episodes, {decisions:,} decisions")
+    print(f"{scenario.name}: {given.episodes} episodes, {pace.decisions:,} decisions")
     print("| part | seconds | share | decisions a second |")
     print("|---|---|---|---|")
     for part, seconds in {**parts, "all": total}.items():
-        print(f"| {part} | {seconds:.2f} | {seconds / total:.0%} | {decisions / seconds:,.0f} |")
+        print(
+            f"| {part} | {seconds:.2f} | {seconds / total:.0%} | {pace.decisions / seconds:,.0f} |"
+        )
 
 
 if __name__ == "__main__":

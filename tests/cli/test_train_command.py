@@ -50,6 +50,7 @@ def test_what_was_learnt_is_left_told_and_written(capsys: pytest.CaptureFixture[
         ", otherwise",
         "decisions a second",
         "the world alone ",
+        " s of trials",
     ):
         assert words in told.out
     assert "generation 2: " in told.err
@@ -60,6 +61,7 @@ def test_what_was_learnt_is_left_told_and_written(capsys: pytest.CaptureFixture[
     assert sum(record["speed"][part] for part in ("world", "control", "rewards", "learning")) == (
         pytest.approx(1.0)
     )
+    assert min(record["ended"][part] for part in ("racing", "plain", "judging")) > 0.0
     text, learnt = FILES["choose.yaml"], (out / "choose.yaml").read_text()
     assert learnt.splitlines()[:8] == text.splitlines()[:8]
     assert learnt.endswith("agreement: {share: 0.9}   # of its decisions\n")
@@ -161,6 +163,23 @@ def test_ctrl_c_says_how_it_goes_on(
         "interrupted after 0 of 20 episodes\n"
         "these are kept; go on with: specc train --resume -o out\n"
     )
+
+
+def test_ctrl_c_in_the_end_says_that_all_was_lived(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_given: object, **_named: object) -> None:
+        raise KeyboardInterrupt
+
+    out = begun()
+    monkeypatch.setattr("specc.training.result.compacted", interrupted)
+
+    assert main(RESUME) == 130
+    assert capsys.readouterr().err.endswith(
+        "interrupted in the end, after all 20 episodes\n"
+        "these are kept; go on with: specc train --resume -o out\n"
+    )
+    assert not (out / "choose.yaml").exists()
 
 
 def test_a_scenario_that_trains_nothing_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

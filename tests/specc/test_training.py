@@ -224,9 +224,10 @@ def test_it_stops_where_the_same_list_wins_for_long_enough() -> None:
 
 
 def test_the_world_alone_takes_a_part_of_an_episode(pen: Scenario) -> None:
-    pace = paced(pen, Task(world(For.JUDGING, 1), AtRandom(), 1.0))
+    tasks = [Task(world(For.JUDGING, i), AtRandom(), 1.0) for i in (1, 2)]
+    pace = paced(pen, tasks)
 
-    assert pace.decisions > 1
+    assert pace.decisions == sum(len(lived(pen, task).steps) for task in tasks)
     assert 0.0 < pace.world < pace.seconds
 
 
