@@ -29,8 +29,9 @@ def init(
 ) -> None:
     """Write a first spec: from a template, or from a log with its `trace:` filled in.
 
-    The templates `scenario`, `architecture`, `body`, `arbiter` and `world` bring all that they
-    name: `specc init night --template scenario` writes a robot in a world that runs as it stands.
+    The templates `scenario`, `training`, `architecture`, `body`, `arbiter` and `world` bring all
+    that they name: `specc init night --template scenario` writes a robot in a world that runs as it
+    stands, and `--template training` one whose arbiter `specc train` teaches in some minutes.
 
     **Examples**
 

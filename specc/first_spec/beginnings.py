@@ -55,8 +55,8 @@ def list_templates() -> str:
 
 
 def _firsts() -> dict[str, str]:
-    """The first spec of each kind that is no behavior."""
-    return {kind: next(iter(set_of(kind, _folder()).values())) for kind in FIRST}
+    """The first specs of all that is no behavior."""
+    return {template: next(iter(set_of(template, _folder()).values())) for template in FIRST}
 
 
 def from_template(template: str, name: str) -> str:

@@ -1,4 +1,4 @@
-"""The first body, arbiter, architecture, world and scenario: each with all that it names."""
+"""The first body, arbiter, architecture, world and scenarios: each with all that it names."""
 
 import re
 from importlib.resources.abc import Traversable
@@ -7,15 +7,17 @@ from typing import Final
 
 FIRST: Final = {
     "scenario": "scenarios/first_light.yaml",
+    "training": "scenarios/first_training.yaml",
     "architecture": "architectures/find_light.yaml",
     "body": "bodies/courier.yaml",
     "arbiter": "arbiters/safe_first.yaml",
     "world": "worlds/office.yaml",
 }
-"""For each kind the spec of the library that one begins with."""
+"""By template the spec of the library that one begins with: one of each kind, one that trains."""
 
 NEXT: Final = {
     "scenario": "specc check {0}; specc simulate {0}",
+    "training": "specc check {0}; specc train {0} -n 600 -o learnt",
     "architecture": "specc check {0}; specc wiring {0}",
 }
 """What one does with a new spec where there is more to do than to check it."""
@@ -23,10 +25,10 @@ NEXT: Final = {
 _NAMED: Final = re.compile(r"(?<=[\s:{,])[\w./]+\.yaml")
 
 
-def set_of(kind: str, library: Traversable) -> dict[str, str]:
-    """The first spec of a kind, then all that it names, by file name and side by side."""
+def set_of(template: str, library: Traversable) -> dict[str, str]:
+    """The first spec of a template, then all that it names, by file name and side by side."""
     found: dict[str, str] = {}
-    wanted = [FIRST[kind]]
+    wanted = [FIRST[template]]
     while wanted:
         place = wanted.pop(0)
         if basename(place) in found:

@@ -175,9 +175,10 @@ def test_ctrl_c_in_the_end_says_that_all_was_lived(
     monkeypatch.setattr("specc.training.result.compacted", interrupted)
 
     assert main(RESUME) == 130
-    assert capsys.readouterr().err.endswith(
-        "interrupted in the end, after all 20 episodes\n"
-        "these are kept; go on with: specc train --resume -o out\n"
+    assert re.search(
+        r"interrupted in the end, after all \d\d episodes\n"
+        r"these are kept; go on with: specc train --resume -o out\n\Z",
+        capsys.readouterr().err,
     )
     assert not (out / "choose.yaml").exists()
 

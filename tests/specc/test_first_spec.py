@@ -158,18 +158,21 @@ def test_a_log_without_a_readable_message_is_told_with_what_was_lost() -> None:
         spec_for(found, "run")
 
 
-@pytest.mark.parametrize("kind", FIRST)
+@pytest.mark.parametrize("template", FIRST)
 def test_the_first_spec_of_each_kind_stands_in_one_folder_and_has_no_mistakes(
-    tmp_path: Path, kind: str
+    tmp_path: Path, template: str
 ) -> None:
-    files = {"own.yaml": beginnings.from_template(kind, "own"), **beginnings.companions(kind)}
+    own = beginnings.from_template(template, "own")
+    files = {"own.yaml": own, **beginnings.companions(template)}
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
 
     spec = load(tmp_path / "own.yaml").spec
+    kind = "scenario" if template == "training" else template
     assert (spec.kind, spec.name) == (kind, "own")
+    untrained = {"S390"} if template == "training" else set()
     for name in files:
-        assert check(tmp_path / name) == ()
+        assert {found.code for found in check(tmp_path / name)} <= untrained
 
 
 def test_the_first_scenario_brings_each_kind_that_it_takes(tmp_path: Path) -> None:
