@@ -7,6 +7,7 @@ from runtime.arbiter import Arbiter, Read
 from specc.explaining import Explained
 from specc.texts.arbiter_portraits import choice_name
 from specc.texts.arbiters import RuleSentence, rule_sentences, way_of, word_of
+from specc.texts.choices import shares_record, shares_text
 from verifier.deciding.conditions import Values
 from verifier.deciding.reasons import held_by
 from verifier.deciding.stretches import Change, Near, Stretch, decision_at, near_at
@@ -18,8 +19,10 @@ AGAIN: Final = "    "
 
 
 def explained_text(found: Explained) -> str:
-    """The timeline: each stretch with its choice, its rule, what began it and what was nearest."""
+    """How often each was chosen, and each stretch: its rule, what began it, what was nearest."""
     lines = [_head(found)]
+    if len(found.stretches) > 1:
+        lines += ["", shares_text(found)]
     rules = rules_of(found)
     for stretch in found.stretches:
         lines += ["", *_stretch(found, stretch, rules)]
@@ -57,6 +60,7 @@ def explained_record(found: Explained) -> dict[str, object]:
         "decisions": int(found.moments.decisions.times.size),
         "agreeing": int((found.moments.agrees & found.moments.decisions.judged).sum()),
         "judged": int(found.moments.decisions.judged.sum()),
+        "shares": shares_record(found),
         "stretches": [_stretch_record(found, each, rules) for each in found.stretches],
     }
 

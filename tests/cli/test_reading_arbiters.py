@@ -97,6 +97,22 @@ def test_a_recording_of_a_robot_is_explained(capsys: pytest.CaptureFixture[str])
     ]
 
 
+def test_how_often_each_was_chosen_is_told_as_the_recording_has_it(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The counts of its classes are those that were published with it (Freire et al., 2010)."""
+    published = {"forward": 2205, "sharp_right": 2097, "slight_right": 826, "slight_left": 328}
+    (record,) = json.loads(out_of(capsys, "explain", LOG, "--spec", KEEP_LEFT, "--format", "json"))
+
+    found = {each["choice"]: each["share"] * record["decisions"] for each in record["shares"]}
+    assert found == pytest.approx(published)
+    assert list(found) == list(published), "that with most decisions comes first"
+    assert [each["rules"] for each in record["shares"]] == [[4], [1], [3], [2]]
+    assert sum(each["stretches"] for each in record["shares"]) == len(record["stretches"])
+    text = out_of(capsys, "explain", LOG, "--spec", KEEP_LEFT)
+    assert "\n  sharp_right   38 %       137        1\n" in text
+
+
 def test_stretches_follow_one_another_and_hold_all_decisions() -> None:
     (found,) = explain(LOG, KEEP_LEFT)
 
