@@ -11,9 +11,9 @@ from lcs.policies.decision_list import DecisionList, always
 from runtime.progress import in_silence
 from runtime.scenario import Scenario
 from specc.training.compaction import Trials, compacted, touched
-from specc.training.race import Racer, heat
+from specc.training.race import Racer, heat, heats
 from specc.training.workers import Workers
-from tests.specc.training_scenes import pen_in
+from tests.specc.training_scenes import equal, pen_in
 
 GO, TURN = 0, 1
 WORLDS = range(8)
@@ -102,6 +102,32 @@ def test_what_matters_in_many_worlds_is_not_tried(pen: Scenario) -> None:
 
     assert same is careful
     assert not told
+
+
+def test_a_trial_ends_when_the_change_is_surely_behind(
+    pen: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("specc.training.compaction.RARE", 1.0)
+    told: list[int] = []
+    worlds = range(4 * len(WORLDS))
+    with Workers(pen, 1) as workers:
+        careful = Racer(CAREFUL)
+        heat([careful], None, worlds, workers, in_silence)
+        trials = Trials(worlds, workers, lambda _what, done, _of: told.append(done))
+        same = trials.unless_worse(careful, lambda _: always(GO, 1), -np.inf)
+
+    assert same is careful
+    assert 0 < max(told) <= heats(len(worlds))[0], "it lived no more than the first heat"
+
+
+def test_two_processes_make_it_as_plain_as_one(pen: Scenario) -> None:
+    plain, _ = compacted_alone(CAREFUL.with_rule(0, GO, np.array([1.9]), FREE), pen)
+    with Workers(pen, 2) as workers:
+        wordy = tried(CAREFUL.with_rule(0, GO, np.array([1.9]), FREE), workers)
+        other = compacted(wordy, Trials(WORLDS, workers, in_silence))
+
+    assert equal(plain.rules, other.rules)
+    assert plain.standing == other.standing
 
 
 def test_what_trials_need_stays(pen: Scenario) -> None:
