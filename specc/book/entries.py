@@ -4,6 +4,7 @@ from runtime.arbiter import Read
 from runtime.architecture import Architecture, Channel, Node
 from runtime.program import Control, Output, Program, State
 from specc.book.contents import Drawn, Shown
+from specc.book.gridded import PROBES
 from specc.book.manifest import (
     Action,
     ArchitectureEntry,
@@ -16,7 +17,7 @@ from specc.book.manifest import (
     Wire,
 )
 from specc.book.naming import Names
-from specc.book.tables import PROBES, Sheet
+from specc.book.tables import Sheet
 
 
 def architecture_entry(of: Drawn, names: Names) -> ArchitectureEntry:
@@ -168,9 +169,9 @@ def _table(sheet: Sheet) -> Tabulated:
         setting=sheet.setting,
         unit=sheet.unit,
         axes=sheet.axes,
-        counts=tuple(len(nodes) for nodes in sheet.nodes),
-        error=sheet.error,
-        size=sheet.size,
+        counts=tuple(len(nodes) for nodes in sheet.grid.nodes),
+        error=sheet.grid.error,
+        size=sheet.grid.size,
         points=PROBES,
     )
 

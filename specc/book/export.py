@@ -13,7 +13,7 @@ from specc.book.illustrations import figures_of
 from specc.book.manifest import Book, Required
 from specc.book.naming import Names, names_of
 from specc.book.reader import READER, reader_text
-from specc.book.tables import as_csv, as_npz
+from specc.book.table_files import as_csv, as_npz
 from specc.book.typesetting.pdf import require_typst, typeset
 from specc.book.words.all import chapters_of
 from specc.book.words.legs import as_rows

@@ -2,60 +2,37 @@
 
 Each quantity gets a table of its own (in each mode one), over those states and wired controls that
 change it there, so that a field of many states needs no grid over all of them. Between the nodes a
-reader goes on linearly. Nodes are added where the values bend, or are off, until that is near
-enough or the table is as large as it may be; then the error is measured at other random places.
-Values are in the spec's own units.
+reader goes on linearly. Values are in the spec's own units.
 """
 
-import csv
-import io
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final, TypeAlias, final
+from typing import TypeAlias, final
 
 import numpy as np
 
-from runtime.arrays import Array, Booleans
+from runtime.arrays import Array
 from runtime.code import Code
 from runtime.flow import Flow, flow_of, next_states, rates
 from runtime.machine import evaluate
 from runtime.program import Control, Kind, Program, State
 from spec_schema.expressions.algebra import is_number
 from specc.book.formulas import in_mode, reads
+from specc.book.gridded import Axis, Grid, gridded
 
-FINE: Final = 2e-3
-"""What a table may be off by, of the largest value in it, as its own bending tells."""
-LARGEST: Final = 50_000
-"""Nodes of a table at most."""
-FIRST: Final = 5
-"""Nodes along an axis at first."""
-ROUNDS: Final = 24
-"""So often nodes are added at most."""
-PROBES: Final = 4000
-"""Random places at which the error is measured."""
-NARROWEST: Final = 1e-4
-"""Of an axis: narrower intervals are not halved, as at a jump."""
-SEED: Final = 36
 Part: TypeAlias = State | Control
 
 
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Sheet:
-    """One table. nodes: (n1,), ... in the axes' units; values: (n1, ...) in `unit`.
-
-    error, size: the largest difference from the program, and the largest value, at `PROBES`
-    random places.
-    """
+    """One table. axes: by name, in their units; what the grid holds is in `unit`."""
 
     quantity: str
     setting: str
     unit: str
     axes: tuple[str, ...]
-    nodes: tuple[Array, ...]
-    values: Array
-    error: float
-    size: float
+    grid: Grid
 
 
 def sheets_of(
@@ -169,9 +146,8 @@ class _Reader:
         for k, part in enumerate(parts):
             inside = points[:, k] * part.unit.scale
             # The rounding of a unit may step over the edge of a domain by a last digit.
-            is_range = not _is_discrete(part)
             register[:, names.index(part.name)] = (
-                np.clip(inside, part.low, part.high) if is_range else points[:, k]
+                points[:, k] if _axis(part).is_discrete else np.clip(inside, part.low, part.high)
             )
         what, scale = self.wanted.what, self.wanted.scale
         if isinstance(what, Code):
@@ -182,155 +158,14 @@ class _Reader:
         return np.asarray(found[:, names.index(what)] / scale)
 
 
-def _is_discrete(part: Part) -> bool:
-    return isinstance(part, State) and part.kind is Kind.DISCRETE
-
-
 def _sheet(reader: _Reader, quantity: str, setting: str, moving: frozenset[str]) -> Sheet:
     parts = reader.axes(moving)
-    nodes: tuple[Array, ...] = tuple(map(_first_nodes, parts))
-    values = _tabulated(reader, parts, nodes)
-    for _ in range(ROUNDS):
-        finer = _finer(parts, nodes, values) or _finer_where_off(reader, parts, nodes, values)
-        if finer is None:
-            break
-        nodes, values = finer, _tabulated(reader, parts, finer)
-    error, size = _measured(reader, parts, nodes, values)
+    grid = gridded(lambda points: reader.at(parts, points), tuple(map(_axis, parts)))
     names = tuple(part.name for part in parts)
-    return Sheet(quantity, setting, reader.wanted.unit, names, nodes, values, error, size)
+    return Sheet(quantity, setting, reader.wanted.unit, names, grid)
 
 
-def _first_nodes(part: Part) -> Array:
+def _axis(part: Part) -> Axis:
     if isinstance(part, State) and part.kind is Kind.DISCRETE:
-        return np.arange(float(len(part.values)))
-    return np.linspace(part.low / part.unit.scale, part.high / part.unit.scale, FIRST)
-
-
-def _tabulated(reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...]) -> Array:
-    mesh = np.meshgrid(*nodes, indexing="ij") if nodes else []
-    points = np.stack([m.ravel() for m in mesh], axis=-1) if nodes else np.zeros((1, 0))
-    return reader.at(parts, points).reshape([len(own) for own in nodes])
-
-
-def _finer(
-    parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
-) -> tuple[Array, ...] | None:
-    """More nodes where the values bend, along the axis that bends most; None where enough."""
-    allowed = FINE * float(np.nanmax(np.abs(values), initial=0.0)) / max(len(parts), 1)
-    bends = [
-        np.zeros(len(own)) if _is_discrete(part) else _bending(own, values, k)
-        for k, (part, own) in enumerate(zip(parts, nodes, strict=True))
-    ]
-    for k in sorted(range(len(parts)), key=lambda k: -bends[k].max()):
-        if bends[k].max() <= allowed:
-            return None
-        finer = (*nodes[:k], _split(nodes[k], bends[k] > allowed), *nodes[k + 1 :])
-        is_more = len(finer[k]) > len(nodes[k])
-        if is_more and np.prod([len(own) for own in finer]) <= LARGEST:
-            return finer
-    return None
-
-
-def _finer_where_off(
-    reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
-) -> tuple[Array, ...] | None:
-    """More nodes around places where the table is off though it does not bend: beside a kink."""
-    points, off, size = _probed(reader, parts, nodes, values, SEED)
-    bad = points[off > FINE * size]
-    finer = []
-    for k, (part, own) in enumerate(zip(parts, nodes, strict=True)):
-        if _is_discrete(part):
-            finer.append(own)
-            continue
-        cells = np.clip(np.searchsorted(own, bad[:, k], side="right") - 1, 0, len(own) - 2)
-        wide = np.diff(own) > NARROWEST * (own[-1] - own[0])
-        hit = np.zeros(len(own) - 1, dtype=np.bool_)
-        hit[cells] = True
-        finer.append(np.sort(np.concatenate([own, 0.5 * (own[1:] + own[:-1])[hit & wide]])))
-    counts = [len(own) for own in finer]
-    is_more = counts != [len(own) for own in nodes]
-    return tuple(finer) if is_more and np.prod(counts) <= LARGEST else None
-
-
-def _bending(nodes: Array, values: Array, axis: int) -> Array:
-    """At each inner node (n,) what is lost beside it by going straight: a quarter of its bend."""
-    rows = np.moveaxis(values, axis, 0).reshape(len(nodes), -1)
-    share = ((nodes[1:-1] - nodes[:-2]) / (nodes[2:] - nodes[:-2]))[:, np.newaxis]
-    straight = (1.0 - share) * rows[:-2] + share * rows[2:]
-    off = np.nan_to_num(np.abs(rows[1:-1] - straight), nan=0.0).max(axis=1)
-    return np.concatenate([[0.0], off / 4.0, [0.0]])
-
-
-def _split(nodes: Array, bent: Booleans) -> Array:
-    """The nodes with a new one in the middle of each interval beside a bent one."""
-    wide = np.diff(nodes) > NARROWEST * (nodes[-1] - nodes[0])
-    middles = 0.5 * (nodes[1:] + nodes[:-1])
-    return np.sort(np.concatenate([nodes, middles[(bent[1:] | bent[:-1]) & wide]]))
-
-
-def _measured(
-    reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array
-) -> tuple[float, float]:
-    """The largest error and value at places that did not choose the nodes."""
-    _, off, size = _probed(reader, parts, nodes, values, SEED + 1)
-    return float(off.max(initial=0.0)), size
-
-
-def _probed(
-    reader: _Reader, parts: tuple[Part, ...], nodes: tuple[Array, ...], values: Array, seed: int
-) -> tuple[Array, Array, float]:
-    """Random places (N, d), how far the table is off there (N,), and the largest value seen."""
-    chance = np.random.default_rng(seed)
-    columns = [
-        chance.integers(0, len(own), PROBES).astype(float)
-        if _is_discrete(part)
-        else chance.uniform(own[0], own[-1], PROBES)
-        for part, own in zip(parts, nodes, strict=True)
-    ]
-    points = np.stack(columns, axis=-1) if columns else np.zeros((1, 0))
-    exact = reader.at(parts, points)
-    off = np.nan_to_num(np.abs(interpolated(nodes, values, points) - exact), nan=0.0)
-    return points, off, float(np.nan_to_num(np.abs(exact), nan=0.0).max())
-
-
-def interpolated(nodes: tuple[Array, ...], values: Array, points: Array) -> Array:
-    """The table (N,) at points (N, d), linear between its nodes, as `read_table` has it."""
-    found = np.broadcast_to(values, (len(points), *values.shape))
-    rows = np.arange(len(points))
-    for k, own in enumerate(nodes):
-        place = np.interp(points[:, k], own, np.arange(len(own)))
-        i = np.minimum(place.astype(int), len(own) - 2)
-        share = (place - i).reshape(-1, *[1] * (found.ndim - 2))
-        found = found[rows, i] + share * (found[rows, i + 1] - found[rows, i])
-    return found
-
-
-def as_npz(sheets: Iterable[Sheet]) -> bytes:
-    """All tables: `SETTING/QUANTITY`, with its `/axes`, `/unit`, and the nodes of each `/AXIS`."""
-    arrays: dict[str, Array] = {}
-    for sheet in sheets:
-        key = f"{sheet.setting}/{sheet.quantity}"
-        arrays[key] = sheet.values
-        arrays[f"{key}/axes"] = np.array(sheet.axes, dtype=np.str_)
-        arrays[f"{key}/unit"] = np.array(sheet.unit)
-        for name, nodes in zip(sheet.axes, sheet.nodes, strict=True):
-            arrays[f"{key}/{name}"] = nodes
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
-    return buffer.getvalue()
-
-
-def as_csv(sheets: tuple[Sheet, ...]) -> bytes:
-    """The same as one table: a row for each node; what does not matter to a quantity is empty."""
-    names = tuple(dict.fromkeys(name for sheet in sheets for name in sheet.axes))
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["setting", "quantity", "unit", *names, "value"])
-    for sheet in sheets:
-        head = [sheet.setting, sheet.quantity, sheet.unit]
-        places = [sheet.axes.index(name) if name in sheet.axes else -1 for name in names]
-        written = [[f"{node:.9g}" for node in own] for own in sheet.nodes]
-        for index, value in zip(np.ndindex(sheet.values.shape), sheet.values.flat, strict=True):
-            row = ["" if k < 0 else written[k][index[k]] for k in places]
-            writer.writerow([*head, *row, f"{value:.9g}"])
-    return text.getvalue().encode()
+        return Axis(0.0, len(part.values) - 1.0, is_discrete=True)
+    return Axis(part.low / part.unit.scale, part.high / part.unit.scale)

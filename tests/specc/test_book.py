@@ -21,9 +21,10 @@ from specc import loading
 from specc.book import folder, manifest
 from specc.book.contents import gathered
 from specc.book.export import export_book
+from specc.book.gridded import LARGEST, interpolated
 from specc.book.loading import compile_book
 from specc.book.sources import Sources, sources_of
-from specc.book.tables import LARGEST, interpolated, sheets_of
+from specc.book.tables import sheets_of
 from specc.book.views import views_at, views_of
 from specc.cli import main
 from specc.origins import files_named, renamed
@@ -475,5 +476,5 @@ def test_tables_of_fields_with_jumps_and_kinks_come_to_an_end() -> None:
     feel = loading.load_program(specs / "feel_wall.yaml")
 
     for sheet in sheets_of(feel, "default", {}, ()):
-        assert sheet.values.size <= LARGEST
-        assert np.isfinite(sheet.values).all()
+        assert sheet.grid.values.size <= LARGEST
+        assert np.isfinite(sheet.grid.values).all()

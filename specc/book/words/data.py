@@ -4,8 +4,9 @@ from typing import Final
 
 from specc.book.chapters import Block, Listing, Paragraph, Section, Table
 from specc.book.contents import Drawn, Shown
+from specc.book.gridded import PROBES
 from specc.book.naming import Names
-from specc.book.tables import PROBES, Sheet
+from specc.book.tables import Sheet
 from specc.book.words.quantities import NOTHING, listed
 from specc.figures.quantities import number
 
@@ -40,8 +41,9 @@ def data_section(of: Drawn, shown: Shown, names: Names) -> Section:
 
 
 def _row(sheet: Sheet) -> tuple[str, ...]:
-    nodes = " × ".join(str(len(own)) for own in sheet.nodes) or "1"
-    share = f" ({number(100.0 * sheet.error / sheet.size, 2)} %)" if sheet.size > 0.0 else ""
+    grid = sheet.grid
+    nodes = " × ".join(str(len(own)) for own in grid.nodes) or "1"
+    share = f" ({number(100.0 * grid.error / grid.size, 2)} %)" if grid.size > 0.0 else ""
     unit = NOTHING if sheet.unit in {"", "1"} else sheet.unit
     return (
         f"`{sheet.quantity}`",
@@ -49,14 +51,14 @@ def _row(sheet: Sheet) -> tuple[str, ...]:
         listed((f"`{name}`" for name in sheet.axes), "constant"),
         nodes,
         unit,
-        f"{number(sheet.error, 2)}{share}" if sheet.error > EXACT * sheet.size else "rounding",
+        f"{number(grid.error, 2)}{share}" if grid.error > EXACT * grid.size else "rounding",
     )
 
 
 def _example(npz: str, sheet: Sheet) -> str:
     """A call at a node of the table, and what it gives."""
-    third = tuple(len(own) // 3 for own in sheet.nodes)
-    at = {n: own[k] for n, own, k in zip(sheet.axes, sheet.nodes, third, strict=True)}
+    third = tuple(len(own) // 3 for own in sheet.grid.nodes)
+    at = {n: own[k] for n, own, k in zip(sheet.axes, sheet.grid.nodes, third, strict=True)}
     places = ", ".join(f'"{name}": {value:.6g}' for name, value in at.items())
     file = npz.partition("/")[2]
     setting = "" if sheet.setting == "default" else f', "{sheet.setting}"'
@@ -65,5 +67,5 @@ def _example(npz: str, sheet: Sheet) -> str:
         "# run in the folder data/ of this book\n"
         "from read_table import value\n\n"
         f'value("{file}", "{sheet.quantity}", {{{places}}}{setting})'
-        f"  # {float(sheet.values[third]):.6g}{unit}"
+        f"  # {float(sheet.grid.values[third]):.6g}{unit}"
     )
