@@ -24,7 +24,7 @@ from specc.training.workers import Workers
 RARE: Final = 0.4
 """A change is tried if the list would live anything else in no more than this share of the worlds:
 one that matters more often is hardly needless, and takes long to try."""
-DIGITS: Final = 1, 2
+DIGITS: Final = 1, 2, 3
 """Digits that bounds are rounded to."""
 
 ROUNDING: Final = 1e-9
