@@ -15,6 +15,7 @@ from specc.figures.palettes import PALETTES, Palette
 from specc.figures.quantities import number
 from specc.figures.style import look
 from specc.figures.style_names import Style
+from verifier.report.wording import percent
 
 HEIGHTS: Final = (2.2, 1.9)
 """Of the panels, in inches."""
@@ -78,7 +79,7 @@ def draw_training(
 
 def _kept(one: Improving) -> str:
     reward, success = one.final
-    did = f"reward {number(reward)}, success {success:.0%}"
+    did = f"reward {number(reward)}, success {percent(success)}"
     return f"what is kept, in the worlds\nwhere it was made plain:\n{did}"
 
 

@@ -8,7 +8,7 @@ from specc.texts.arbiter_portraits import choice_name
 from specc.texts.arbiters import word_of
 from verifier.deciding.stretches import Stretch
 from verifier.report.layout import INDENT, table
-from verifier.report.wording import percent
+from verifier.report.wording import percents
 
 
 @final
@@ -47,9 +47,10 @@ def shares_text(found: Explained) -> str:
     """A line for each choice, below a title."""
     rules = f"by {word_of(found.arbiter)}"
     rows = [("choice", "decisions", "stretches", rules)]
-    for each in shares_of(found):
+    shares = shares_of(found)
+    for each, part in zip(shares, percents([each.part for each in shares]), strict=True):
         by = ", ".join(map(str, each.rules))
-        rows.append((each.choice, percent(each.part), f"{each.stretches:,}", by))
+        rows.append((each.choice, part, f"{each.stretches:,}", by))
     return table(rows, INDENT)
 
 

@@ -110,7 +110,7 @@ def test_how_often_each_was_chosen_is_told_as_the_recording_has_it(
     assert [each["rules"] for each in record["shares"]] == [[4], [1], [3], [2]]
     assert sum(each["stretches"] for each in record["shares"]) == len(record["stretches"])
     text = out_of(capsys, "explain", LOG, "--spec", KEEP_LEFT)
-    assert "\n  sharp_right   38 %       137        1\n" in text
+    assert "\n  sharp_right   39 %       137        1\n" in text
 
 
 def test_stretches_follow_one_another_and_hold_all_decisions() -> None:
