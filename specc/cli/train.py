@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 WITHOUT_CODE: Final = "train it in a scenario without Python of your own: none is run here"
 """What helps where a scenario needs Python of the user's."""
+UNTRAINED: Final = "S390"
+"""The code of the warning that says `run specc train`."""
+AFTERWARDS: Final = "now the last race, trials that make its best list plain, and judging"
 
 
 @final
@@ -233,7 +236,7 @@ def _scenario(path: Path) -> "Scenario":
         message = "this scenario trains nothing"
         remedy = "say under `train` which arbiter learns, and from which reward"
         raise fault("V410", path, message, remedy)
-    show_diagnostics(each for each in compiled.warnings if each.code != "S390")
+    show_diagnostics(each for each in compiled.warnings if each.code != UNTRAINED)
     return compiled.scenario
 
 
@@ -271,6 +274,7 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
         ):
             with shown_bar(scenario.name) as bar:
                 course = go_on(course, scenario, begun.settings, workers, bar.advance, keep)
+            say(AFTERWARDS)
             with progress_bar(scenario.name) as tell:
                 trained = concluded(begun, scenario, text, course, workers, tell)
     except KeyboardInterrupt:
@@ -282,14 +286,17 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
 
 def _stopped(begun: "Begun", kept: "Course", folder: Path | None) -> Status:
     """Say how far it came with whole generations, and how it goes on."""
-    if kept.is_over(begun.settings):
+    if not kept.generations:
+        say("interrupted in the first generation", "bold")
+    elif kept.is_over(begun.settings):
         say(f"interrupted in the end, after all {kept.episodes:,} episodes", "bold")
     else:
         say(f"interrupted after {kept.episodes:,} of {begun.settings.episodes:,} episodes", "bold")
+    what = "these are kept" if kept.generations else "none of it is kept yet"
     if folder is None:
         say("nothing was kept, since no folder was named: -o FOLDER")
     else:
-        say(f"these are kept; go on with: specc train --resume -o {folder}")
+        say(f"{what}; go on with: specc train --resume -o {folder}")
     return Status.INTERRUPTED
 
 
@@ -308,7 +315,7 @@ def _write(trained: "Trained", given: Output) -> None:
 def _tell(trained: "Trained", form: Format) -> None:
     from specc.texts.training import training_record, training_text
 
-    show_diagnostics(trained.warnings)
+    show_diagnostics(each for each in trained.warnings if each.code != UNTRAINED)
     if form is Format.JSON:
         print_json(training_record(trained))
     else:

@@ -19,6 +19,7 @@ from verifier.report.wording import percent
 
 HEIGHTS: Final = (2.2, 1.9)
 """Of the panels, in inches."""
+LEARNT_FROM: Final = "episodes learnt from, those of races included"
 
 
 @final
@@ -47,11 +48,11 @@ class Improving:
 def draw_training(
     one: Improving, title: str, *, about: Sequence[str] = (), style: Style = Style.SCREEN
 ) -> Figure:
-    """Reward, and below it success, over the episodes that were lived; the best is marked."""
+    """Reward, and below it success, over the episodes learnt from; the best is marked."""
     palette = PALETTES[style]
     with look(palette):
         end = float(one.episodes[-1]) * 1.02
-        figure, (rewards, successes) = panels(title, about, HEIGHTS, end, palette, "episodes")
+        figure, (rewards, successes) = panels(title, about, HEIGHTS, end, palette, LEARNT_FROM)
         rewards.set_ylabel("reward of an episode")
         rewards.yaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
         successes.set_ylabel("success")

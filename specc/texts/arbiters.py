@@ -114,9 +114,17 @@ def arbiter_record(arbiter: Arbiter, set_to: Values = NOTHING_SET) -> dict[str, 
 
 
 def by_choice(rules: Sequence[RuleSentence]) -> tuple[RuleSentence, ...]:
-    """The rules, those with one choice together, in the order of the first of each."""
+    """The rules, those with one choice together, in the order of the first of each.
+
+    A last one that always holds stays the last: it is what is left.
+    """
     order = {choice: place for place, choice in enumerate(dict.fromkeys(r.choice for r in rules))}
-    return tuple(sorted(rules, key=lambda rule: (order[rule.choice], rule.number)))
+
+    def place(rule: RuleSentence) -> tuple[bool, int, int]:
+        is_left = rule.number == len(rules) and not rule.when
+        return is_left, order[rule.choice], rule.number
+
+    return tuple(sorted(rules, key=place))
 
 
 def quantities(arbiter: Arbiter, set_to: Values = NOTHING_SET) -> tuple[str, ...]:

@@ -86,6 +86,13 @@ def _head(trained: Trained) -> str:
 def _plainer(trained: Trained, worlds: str) -> str:
     """What was given up of the best list, and what that cost where it was tried."""
     was, now, kept = trained.best.rules, trained.kept.rules, trained.kept
+    if not len(now):
+        always = trained.arbiter.choices[now.otherwise]
+        return (
+            f"no list did better than to choose {always} always: that succeeds in "
+            f"{percent(kept.trial.success)} of {worlds}, with a reward of "
+            f"{number(kept.trial.reward)}; more episodes may help"
+        )
     if (len(was), was.conditions) == (len(now), now.conditions):
         return (
             f"the best list was tried in {worlds} more, and no rule or condition of it could be "
@@ -103,7 +110,7 @@ def _plainer(trained: Trained, worlds: str) -> str:
 
 def _ending(trained: Trained) -> str:
     settings, course = trained.begun.settings, trained.course
-    if course.episodes >= settings.episodes:
+    if not course.is_stale(settings):
         return ""
     most, after = f"{settings.episodes:,}", counted(settings.patience, "race")
     return f" (it stopped before {most}: nothing beat the same list in {after})"

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from lcs.policies.decision_list import DecisionList
 from lcs.policies.steps import Steps
 from specc.training.episode import Episode
 from specc.training.settings import Settings
+
+FEW: Final = 4
+"""No generation is begun with fewer than this part of the episodes that one explores by."""
 
 
 @final
@@ -89,10 +92,11 @@ class Course:
         return len(self.lived)
 
     def is_over(self, settings: Settings) -> bool:
-        """Whether all episodes are lived, or it got no better for long enough."""
+        """Whether hardly any episodes are left, or it got no better for long enough."""
         if not self.generations:
             return False
-        return self.episodes >= settings.episodes or self.is_stale(settings)
+        left = settings.episodes - self.episodes
+        return left < settings.each / FEW or self.is_stale(settings)
 
     def is_stale(self, settings: Settings) -> bool:
         """Whether no other list won for long enough."""

@@ -81,8 +81,9 @@ def begun_in(folder: Path) -> Begun:
     refuse_file(folder, "V414")
     path = folder / TRAINING
     if not path.exists():
-        remedy = "name the folder that -o named; or leave --resume out"
-        raise fault("V411", folder, f"there is nothing to resume: no {TRAINING}", remedy)
+        lacks = f"no {TRAINING}" if folder.exists() else "it does not exist"
+        remedy = "name the folder that -o named; or begin anew: specc train SCENARIO -o FOLDER"
+        raise fault("V411", folder, f"there is nothing to resume in this folder: {lacks}", remedy)
     begun = record_in(path, "V412", "training", _begun_of)
     return dataclasses.replace(begun, scenario=os.path.relpath(folder / begun.scenario))
 

@@ -160,8 +160,8 @@ def test_ctrl_c_says_how_it_goes_on(
 
     assert main(RESUME) == 130
     assert capsys.readouterr().err.endswith(
-        "interrupted after 0 of 20 episodes\n"
-        "these are kept; go on with: specc train --resume -o out\n"
+        "interrupted in the first generation\n"
+        "none of it is kept yet; go on with: specc train --resume -o out\n"
     )
 
 

@@ -47,6 +47,24 @@ def test_a_rule_is_a_sentence_in_the_units_of_what_it_reads(tmp_path: Path) -> N
     )
 
 
+def test_rules_of_one_choice_stand_together_and_what_is_left_comes_last(tmp_path: Path) -> None:
+    arbiter = tried(
+        tmp_path,
+        "choose: look, when: used > 0.9",
+        "choose: avoid, when: ahead < near",
+        "choose: look, when: used > 0.5",
+        "choose: look",
+    )
+
+    assert [each.partition(":")[0] for each in arbiter_sentences(arbiter)] == [
+        "rule 1",
+        "rule 3",
+        "rule 2",
+        "rule 4",
+        "dock, never",
+    ]
+
+
 def test_what_no_earlier_rule_says_already_is_not_said_again(tmp_path: Path) -> None:
     arbiter = tried(
         tmp_path,

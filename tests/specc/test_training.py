@@ -221,6 +221,8 @@ def test_it_stops_where_the_same_list_wins_for_long_enough() -> None:
     assert course.is_over(settings)
     assert not Course(course.lived, every[:3]).is_over(settings)
     assert Course((NOTHING,) * 100, every[:1]).is_over(settings)
+    assert Course((NOTHING,) * 81, every[:1]).is_over(settings), "19 of 80 are hardly any"
+    assert not Course((NOTHING,) * 80, every[:1]).is_over(settings)
 
 
 def test_the_world_alone_takes_a_part_of_an_episode(pen: Scenario) -> None:
