@@ -2,7 +2,8 @@
 
 Places in the space of what it reads are drawn evenly. From each of them one reading is moved
 through its range; where the choice changes, a reading below and one above that place are shown, so
-that an arbiter with another threshold decides otherwise. Each is shown for a while, since an
+that an arbiter with another threshold decides otherwise. Of rules, readings are added at which
+single ones matter, so that an arbiter that lacks one does. Each is shown for a while, since an
 arbiter may remember. How often all of it is repeated is the verifier's to say: until the spec
 itself passes in a rehearsal, and one that reads wrongly fails.
 """
@@ -22,8 +23,14 @@ from verifier.arbitration.numbers import Decide, Running
 from verifier.arbitration.reader import CHOICE
 from verifier.arbitration.saying import CONFIDENCE
 from verifier.arbitration.shares import times_longer
-from verifier.procedure.bench_model import BenchTest, Biased, Reading, Shown
+from verifier.procedure.bench_model import BenchTest, Biased, Lacking, Reading, Shown
 from verifier.procedure.candidates import evenly, rounded
+from verifier.procedure.single_rules import (
+    mattering_rules,
+    own_readings,
+    single_rules,
+    without_rule,
+)
 from verifier.report.report import Verdict
 from verifier.traces.trace import TICKS, Series, Trace
 
@@ -42,6 +49,10 @@ DECISIONS: Final = 4
 MOST_REPEATS: Final = 40
 SPARE: Final = 1.2
 """So many times as much as the verifier asks for."""
+CLEARLY: Final = 2.5
+"""So many times what may differ is to differ where a rule lacks."""
+ADDED: Final = 0.5
+"""Readings that are added for rules are this part of all at most."""
 
 
 def bench_test(arbiter: Arbiter, period: float) -> BenchTest | None:
@@ -54,7 +65,7 @@ def bench_test(arbiter: Arbiter, period: float) -> BenchTest | None:
         return None
     bench = _Bench(arbiter, period)
     rows, names = bench.pairs()
-    rows = rows[bench.chosen_last(rows) >= 0]
+    rows = bench.with_single_rules(rows[bench.chosen_last(rows) >= 0])
     shown = [
         Shown(dict(zip(names, map(float, row), strict=True)), arbiter.choices[choice])
         for row, choice in zip(rows, bench.chosen_last(rows), strict=True)
@@ -62,6 +73,7 @@ def bench_test(arbiter: Arbiter, period: float) -> BenchTest | None:
     ]
     repeats, found = bench.rehearsed(rows)
     biased = tuple(bench.biased(rows, repeats, place) for place in bench.smooth)
+    lacking, idle = bench.without_single_rules(rows, repeats)
     reached = {each.chosen for each in shown}
     return BenchTest(
         name=arbiter.name,
@@ -70,16 +82,24 @@ def bench_test(arbiter: Arbiter, period: float) -> BenchTest | None:
         readings=tuple(Reading(r.name, r.unit, r.values) for r in arbiter.reads),
         shown=tuple(shown),
         repeats=repeats,
-        required=AGREED if arbiter.agreement is None else arbiter.agreement.share,
+        required=bench.required,
         never=tuple(name for name in arbiter.choices if name not in reached),
         verdict=found.report.verdict,
         reasons=found.report.reasons,
         biased=tuple(each for each in biased if each is not None),
+        lacking=lacking,
+        idle=idle,
     )
 
 
 def _no_code(text: str) -> Callee:
     raise UserCodeError(f"{text} is code, which no test procedure is derived from")
+
+
+def _forgets(arbiter: Arbiter) -> bool:
+    """Whether it chooses by what it reads now alone."""
+    is_rules = arbiter.paradigm is Paradigm.RULES
+    return is_rules and all(each.until is None and not each.lasts for each in arbiter.rules)
 
 
 @final
@@ -102,6 +122,16 @@ class _Bench:
         """Which reads are no discrete ones."""
         return tuple(i for i, read in enumerate(self.arbiter.reads) if not read.values)
 
+    @property
+    def is_rules(self) -> bool:
+        """Whether the first of its rules that holds decides."""
+        return self.arbiter.paradigm is Paradigm.RULES
+
+    @property
+    def required(self) -> float:
+        """The share of decisions that must agree."""
+        return AGREED if self.arbiter.agreement is None else self.arbiter.agreement.share
+
     def chosen_last(self, rows: Array) -> Integers:
         """What it has chosen at the end of each row (N,), -1 for nothing."""
         return self.chosen(np.repeat(rows, self.ticks, axis=0))[self.ticks - 1 :: self.ticks]
@@ -112,9 +142,13 @@ class _Bench:
         made.reset(0)
         return made.decide
 
-    def chosen(self, rows: Array) -> Integers:
-        """What it chooses (N,) where it is shown these rows (N, m) one after the other."""
-        decide = self.running(self.arbiter)
+    def chosen(self, rows: Array, one: Arbiter | None = None) -> Integers:
+        """What it, or another one, chooses (N,) that is shown rows (N, m) one after the other."""
+        one = one or self.arbiter
+        kinds, of_kind = np.unique(rows, axis=0, return_inverse=True)
+        if _forgets(one) and len(kinds) < len(rows):
+            return self.chosen(kinds, one)[of_kind.reshape(-1)]
+        decide = self.running(one)
         controls = [control.default for control in self.arbiter.controls]
         found = np.full(len(rows), -1)
         for place, row in enumerate(rows):
@@ -136,6 +170,20 @@ class _Bench:
         if not rows:
             rows = list(self._places())
         return np.array(rows), [read.name for read in self.arbiter.reads]
+
+    def with_single_rules(self, rows: Array) -> Array:
+        """The rows, and more of them, until each rule matters at enough of them."""
+        if not self.is_rules:
+            return rows
+        own, most = own_readings(self.arbiter), int(len(rows) / (1.0 - ADDED))
+        counts = mattering_rules(self.arbiter, rows).sum(axis=0)
+        wanted = CLEARLY * (1.0 - self.required)
+        for at in range(max(map(len, own), default=0)):
+            for rule, readings in enumerate(own):
+                if at < len(readings) and len(rows) < most and counts[rule] <= wanted * len(rows):
+                    rows = np.concatenate([rows, readings[at : at + 1]])
+                    counts += mattering_rules(self.arbiter, rows[-1:])[0]
+        return rows
 
     def _places(self) -> Array:
         """Rows, evenly over what can be read."""
@@ -215,11 +263,31 @@ class _Bench:
             return None
         return Biased(read.name, bias, found.report.verdict)
 
-    def _judged(self, rows: Array, repeats: int, read_as: Array | None = None) -> Arbitrated:
+    def without_single_rules(
+        self, rows: Array, repeats: int
+    ) -> tuple[tuple[Lacking, ...], tuple[int, ...]]:
+        """Those without one of the rules, and numbers of rules that matter nowhere."""
+        if not self.is_rules:
+            return (), ()
+        rules = np.array(single_rules(self.arbiter), np.int64)
+        matters = mattering_rules(self.arbiter, rows).any(axis=0)
+        lacking = []
+        for place in rules[matters].tolist():
+            found = self._judged(rows, repeats, one=without_rule(self.arbiter, place))
+            lacking.append(Lacking(place + 1, found.report.verdict))
+        return tuple(lacking), tuple((rules[~matters] + 1).tolist())
+
+    def _judged(
+        self,
+        rows: Array,
+        repeats: int,
+        read_as: Array | None = None,
+        one: Arbiter | None = None,
+    ) -> Arbitrated:
         """What the verifier says of one that is shown all rows, and may read other ones."""
         shown = np.tile(np.repeat(rows, self.ticks, axis=0), (repeats, 1))
         acted_on = rows if read_as is None else read_as
-        chosen = self.chosen(np.tile(np.repeat(acted_on, self.ticks, axis=0), (repeats, 1)))
+        chosen = self.chosen(np.tile(np.repeat(acted_on, self.ticks, axis=0), (repeats, 1)), one)
         times = np.asarray(np.arange(len(shown)) * self.period, dtype=np.float64)
         series = {
             read.name: Series(read.name, times, shown[:, i], read.name, TICKS)

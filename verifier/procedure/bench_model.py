@@ -38,12 +38,22 @@ class Biased:
 
 @final
 @dataclass(frozen=True, slots=True)
+class Lacking:
+    """An arbiter that lacks the rule of this number, from 1, and what the verifier says of it."""
+
+    rule: int
+    verdict: Verdict
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class BenchTest:
     """What to show an arbiter, one after the other, each for `seconds`; all that `repeats` times.
 
     period: of its decisions. required: the share of decisions that must agree. never: choices that
     no reading that was tried leads to. verdict: of the verifier on the spec itself, rehearsed, for
-    `reasons`; biased: on others.
+    `reasons`; biased, lacking: on others. idle: numbers of rules without which nothing that was
+    tried makes it choose anything else.
     """
 
     name: str
@@ -57,6 +67,8 @@ class BenchTest:
     verdict: Verdict
     reasons: tuple[str, ...]
     biased: tuple[Biased, ...]
+    lacking: tuple[Lacking, ...]
+    idle: tuple[int, ...]
 
     @property
     def duration(self) -> float:
@@ -65,5 +77,6 @@ class BenchTest:
 
     @property
     def decides(self) -> bool:
-        """Whether the spec itself passes, and each that reads wrongly fails."""
-        return self.verdict is Verdict.PASS and all(b.verdict is Verdict.FAIL for b in self.biased)
+        """Whether the spec itself passes, and each that reads wrongly or lacks a rule fails."""
+        others = {*(each.verdict for each in self.biased), *(each.verdict for each in self.lacking)}
+        return self.verdict is Verdict.PASS and others <= {Verdict.FAIL}

@@ -1,6 +1,9 @@
 """The test procedure of an arbiter in words."""
 
+from collections.abc import Iterator
+
 from verifier.procedure.bench_model import BenchTest, Biased, Shown
+from verifier.report.report import Verdict
 from verifier.report.wording import exact, listed, number, often, percent, quantity, seconds
 
 
@@ -46,10 +49,30 @@ def rehearsal_sentences(test: BenchTest) -> tuple[str, ...]:
         f" ({percent(test.required)} of decisions must agree)"
     )
     biased = tuple(_biased(test, each) for each in test.biased)
-    if not test.never:
-        return (told, *biased)
-    never = f"no readings that were tried make it choose {listed(list(test.never))}"
-    return (told, *biased, never)
+    return (told, *biased, *_lacking(test), *_never(test))
+
+
+def _lacking(test: BenchTest) -> Iterator[str]:
+    """What became of those that lack a rule, and which rules nobody would miss."""
+    by_verdict: dict[Verdict, list[str]] = {}
+    for each in test.lacking:
+        by_verdict.setdefault(each.verdict, []).append(str(each.rule))
+    for verdict, rules in by_verdict.items():
+        untold = "" if verdict is Verdict.FAIL else ": these readings do not tell it apart for sure"
+        yield f"one that lacks rule {_either(rules)} gets {verdict.upper()}{untold}"
+    if test.idle:
+        idle = _either(list(map(str, test.idle)))
+        yield f"no readings were found at which one that lacks rule {idle} chooses anything else"
+
+
+def _either(rules: list[str]) -> str:
+    *most, last = rules
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+def _never(test: BenchTest) -> Iterator[str]:
+    if test.never:
+        yield f"no readings that were tried make it choose {listed(list(test.never))}"
 
 
 def _biased(test: BenchTest, each: Biased) -> str:

@@ -143,8 +143,9 @@ def _excited(procedure: Procedure) -> Iterator[Block]:
 
 def _bench(test: BenchTest) -> Iterator[Block]:
     yield Paragraph(
-        f"{_sentence(how_sentence(test))} They stand on either side of each change of choice; its"
-        " controls keep their defaults. Choices that it remembers depend on what was shown before."
+        f"{_sentence(how_sentence(test))} They stand on either side of changes of choice, and where"
+        " single rules matter; its controls keep their defaults. Choices that it remembers depend"
+        " on what was shown before."
     )
     titles = ("", *(f"`{each.name}`" for each in test.readings), "it chooses")
     rows = tuple(

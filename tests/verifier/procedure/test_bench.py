@@ -94,5 +94,71 @@ def test_it_is_told_in_words(bench: BenchTest) -> None:
     assert any("too high gets FAIL" in line for line in told)
 
 
+STRIPS = """specc: 1
+kind: arbiter
+name: strips
+reads:
+  ahead: {unit: m, domain: [0, 2]}
+  lamp: {unit: m, domain: [0, 6]}
+choices: [flee, go]
+by:
+  rules:
+    - {choose: go, when: ahead >= narrow and ahead < wide}
+    - {choose: go, when: ahead >= some and lamp < near}
+    - {choose: go, when: ahead >= wide and lamp < nearest}
+    - {choose: flee, when: ahead < wider and lamp >= nearest}
+    - {choose: go}
+constants:
+  narrow: {value: 0.3, unit: m}
+  wide: {value: 0.36, unit: m}
+  wider: {value: 0.37, unit: m}
+  some: {value: 0.23, unit: m}
+  near: {value: 1.22, unit: m}
+  nearest: {value: 0.62, unit: m}
+"""
+"""Strips of 6 cm and of 1 cm, and a rule that nobody would miss."""
+
+
+@pytest.fixture(scope="module")
+def strips(tmp_path_factory: pytest.TempPathFactory) -> Arbiter:
+    path = tmp_path_factory.mktemp("strips") / "strips.yaml"
+    path.write_text(STRIPS, encoding="utf-8")
+    return compile_arbiter(path).arbiter
+
+
+def test_rules_that_hold_in_narrow_strips_are_missed_where_they_lack(strips: Arbiter) -> None:
+    """The rules once more, in Python; each is left out in turn."""
+    found = bench_test(strips, PERIOD)
+    assert found is not None
+    rules: list[tuple[Callable[[float, float], bool], int]] = [
+        (lambda ahead, _: 0.3 <= ahead < 0.36, 1),
+        (lambda ahead, lamp: ahead >= 0.23 and lamp < 1.22, 1),
+        (lambda ahead, lamp: ahead >= 0.36 and lamp < 0.62, 1),
+        (lambda ahead, lamp: ahead < 0.37 and lamp >= 0.62, 0),
+        (lambda _ahead, _lamp: True, 1),
+    ]
+    wrong = np.zeros(4)
+    for each in found.shown:
+        ahead, lamp = each.values["ahead"], each.values["lamp"]
+        chosen = next(choice for holds, choice in rules if holds(ahead, lamp))
+        assert ("flee", "go")[chosen] == each.chosen
+        for lacking in range(4):
+            left = [*rules[:lacking], *rules[lacking + 1 :]]
+            wrong[lacking] += next(c for holds, c in left if holds(ahead, lamp)) != chosen
+
+    assert (wrong > 0).tolist() == [True, True, False, True]
+    assert (wrong[[0, 1, 3]] > 0.02 * len(found.shown)).all(), "more than may differ"
+    assert [(each.rule, each.verdict) for each in found.lacking] == [
+        (1, Verdict.FAIL),
+        (2, Verdict.FAIL),
+        (4, Verdict.FAIL),
+    ]
+    assert found.idle == (3,)
+    assert found.decides
+    told = bench_sentences(found)
+    assert "one that lacks rule 1, 2 or 4 gets FAIL" in told
+    assert "no readings were found at which one that lacks rule 3 chooses anything else" in told
+
+
 def test_an_arbiter_that_reads_nothing_has_none(arbiter: Arbiter) -> None:
     assert bench_test(replace(arbiter, reads=()), PERIOD) is None
