@@ -168,7 +168,7 @@ def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -
             continue
         units = [
             known[o.name].unit for o in node.operands if isinstance(o, Name) and o.name in known
-        ]
+        ] or _units_of(node.operands, known)
         if len(units) != 1 or units[0] in {"", "1"}:
             continue
         for operand in node.operands:
@@ -178,13 +178,23 @@ def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -
                 )
                 return replace(fault, help=remedy)
             if isinstance(operand, Name) and is_quantity(operand.name):
-                owner = next(
-                    o.name for o in node.operands if isinstance(o, Name) and o.name in known
-                )
+                names = (o.name for o in node.operands if isinstance(o, Name) and o.name in known)
+                owner = next(names, "the other side")
                 return replace(
                     fault, help=f"{owner} is in {units[0]}: write a number in {units[0]}"
                 )
     return fault
+
+
+def _units_of(operands: Iterable[Expr], known: Mapping[str, Measured]) -> list[str]:
+    """The units of those that are made of several parts."""
+    found = []
+    for each in operands:
+        if isinstance(each, Apply):
+            names = {node.name for node in walk(each) if isinstance(node, Name)}
+            dimension = dimension_of(each, _dimensions(names, known))[0]
+            found += [] if dimension is None else [describe(dimension)]
+    return found
 
 
 def _shown_in(sentence: Sentence, dimensions: list[Dimension | None]) -> Unit:

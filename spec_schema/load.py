@@ -128,6 +128,7 @@ def examine_source(source: Source, wanted: str = "behavior") -> Examined:
     if shape.spec is not None:
         return Examined((), Loaded(source, shape.spec, places), frozenset())
     mistakes = first_ones(_diagnostic(places, mistake) for mistake in shape.mistakes)
+    places = replace(places, renamed=shape.written)
     rest = salvage(model, data)
     mistakes = first_ones((*mistakes, *(_diagnostic(places, found) for found in rest.hidden)))
     if rest.spec is None:

@@ -47,11 +47,13 @@ class Places:
 
     A path that goes further than what is written means the last thing that is written. Where lists
     have lost items, `kept` leads from the paths of what is left to the text (see `as_written`).
+    renamed: how keys were written that were taken for others, by what they were taken for.
     """
 
     source: Source
     root: Node
     kept: AbstractMapping[Path, tuple[int, ...]] = field(default_factory=dict)
+    renamed: AbstractMapping[Path, str] = field(default_factory=dict)
 
     def value(self, path: Path) -> Span:
         """Where the value stands; for an empty one, its key."""
@@ -64,7 +66,7 @@ class Places:
 
     def written(self, path: Path) -> Path:
         """The longest beginning of `path` that stands in the text."""
-        return as_written(path, self.kept)[: self._walk(path)[2]]
+        return self._as_written(path)[: self._walk(path)[2]]
 
     def within(self, path: Path, start: int, end: int, *, key: bool = False) -> Span:
         """Where the characters `start` to `end` of a text, or of the last key of the path, stand.
@@ -76,7 +78,7 @@ class Places:
         span = node.span
         text = node.text if isinstance(node, Scalar) else None
         if key and entry is not None:
-            span, text = entry.key, str(path[depth - 1])
+            span, text = entry.key, str(self._as_written(path)[depth - 1])
         offset = self._offset(span, text)
         if offset is None or not 0 <= start <= end <= span.end_column - span.column:
             return span
@@ -85,7 +87,7 @@ class Places:
 
     def dotted(self, path: Path) -> str:
         """The path in the notation of the diagnostics."""
-        return dotted(as_written(path, self.kept))
+        return dotted(self._as_written(path))
 
     def origin(self, path: Path) -> str:
         """`file:line:column` of the key, else of the item."""
@@ -95,7 +97,7 @@ class Places:
     def _walk(self, path: Path) -> tuple[Entry | None, Node, int]:
         entry: Entry | None = None
         node = self.root
-        for depth, step in enumerate(as_written(path, self.kept)):
+        for depth, step in enumerate(self._as_written(path)):
             match node:
                 case Mapping() if step in node.entries:
                     entry = node.entries[str(step)]
@@ -106,6 +108,10 @@ class Places:
                 case _:
                     return entry, node, depth
         return entry, node, len(path)
+
+    def _as_written(self, path: Path) -> Path:
+        items = as_written(path, self.kept)
+        return tuple(self.renamed.get(items[: k + 1], step) for k, step in enumerate(items))
 
     def _offset(self, span: Span, text: str | None) -> int | None:
         """How many characters precede the text in its span; None where they differ."""

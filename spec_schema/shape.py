@@ -4,7 +4,7 @@ Pydantic stops at a mapping whose keys are wrong: its own rules are not looked a
 is taken for what it was probably meant to be, and the document checked again.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Generic, TypeVar, final
@@ -30,10 +30,14 @@ Model = TypeVar("Model", bound=BaseModel)
 @final
 @dataclass(frozen=True, slots=True)
 class Shape(Generic[Model]):
-    """The model of a document, or why there is none."""
+    """The model of a document, or why there is none.
+
+    written: how the keys were written that were taken for others, by what they were taken for.
+    """
 
     spec: Model | None
     mistakes: tuple[Mistake, ...]
+    written: Mapping[Path, str] = field(default_factory=dict)
 
 
 def check_shape(model: type[Model], data: dict[str, Plain]) -> Shape[Model]:
@@ -46,12 +50,12 @@ def check_shape(model: type[Model], data: dict[str, Plain]) -> Shape[Model]:
             errors = error.errors(include_url=False)
             unknown = [found["loc"] for found in errors if found["type"] == "extra_forbidden"]
             if not unknown:
-                return Shape(None, repairs.all_mistakes(errors))
+                return Shape(None, repairs.all_mistakes(errors), repairs.written)
             repairs.repair(unknown)
         else:
             found = repairs.all_mistakes([])
-            return Shape(None if found else spec, found)
-    return Shape(None, repairs.all_mistakes([]))
+            return Shape(None if found else spec, found, repairs.written)
+    return Shape(None, repairs.all_mistakes([]), repairs.written)
 
 
 @final
