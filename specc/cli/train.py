@@ -250,13 +250,13 @@ def _learner(scenario: "Scenario") -> str:
 def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) -> Status:
     from specc.scenarios.failures import told_failures
     from specc.texts.training import generation_text
-    from specc.training.folder import course_in, keep_in
+    from specc.training.folder import course_in, keep_in, remembered_in
     from specc.training.result import concluded
     from specc.training.training import go_on
     from specc.training.unlearnable import told_unlearnable
     from specc.training.workers import Workers
 
-    course = course_in(given.folder)
+    course, remembered = course_in(given.folder), remembered_in(given.folder)
     warmed_policies(begun.settings.learner)
 
     def keep(now: "Course") -> None:
@@ -276,7 +276,7 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
                 course = go_on(course, scenario, begun.settings, workers, bar.advance, keep)
             say(AFTERWARDS)
             with progress_bar(scenario.name) as tell:
-                trained = concluded(begun, scenario, text, course, workers, tell)
+                trained = concluded(begun, scenario, text, course, workers, tell, remembered)
     except KeyboardInterrupt:
         return _stopped(begun, course, given.folder)
     _tell(trained, given.form)
@@ -301,11 +301,13 @@ def _stopped(begun: "Begun", kept: "Course", folder: Path | None) -> Status:
 
 
 def _write(trained: "Trained", given: Output) -> None:
+    from specc.training.folder import forget_trials
     from specc.training.written import write_all, write_in_place
 
     if given.folder is not None:
         with progress_bar(trained.scenario.name) as bar:
             names = write_all(trained, given.folder, given.style, bar)
+        forget_trials(given.folder)
         say(f"wrote {', '.join(names)} into {given.folder}", "bold")
     if given.writes:
         path = write_in_place(trained.source, trained.edited)

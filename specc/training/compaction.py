@@ -19,6 +19,7 @@ from lcs.policies.shortened import shortened
 from lcs.rules.digits import of_digits
 from runtime.progress import Progress
 from specc.training.race import Racer, heat, heats, would_live
+from specc.training.remembered import Remembered
 from specc.training.workers import Workers
 
 RARE: Final = 0.4
@@ -36,11 +37,12 @@ Change: TypeAlias = Callable[[DecisionList], DecisionList]
 @final
 @dataclass(frozen=True, eq=False, slots=True)
 class Trials:
-    """Where lists are tried, who lives the trials, and who is told how far they are."""
+    """Where lists are tried, who lives the trials, who is told how far they are, what is known."""
 
     worlds: Sequence[int]
     workers: Workers
     tell: Progress
+    remembered: Remembered
 
     def unless_worse(self, now: Racer, change: Change, floor: float) -> Racer:
         """The changed list, unless it succeeds less often or has less reward than `floor`.
@@ -48,21 +50,32 @@ class Trials:
         Raises:
             NoRoomError, UserCodeError, SpecError: as `Workers.lived`.
         """
+        changed = Racer(change(now.rules))
+        if touched(changed.rules, now) > RARE * len(self.worlds):
+            return now
+        if not self.remembered.stays(lambda: self._is_as_good(changed, now, floor)):
+            return now
+        self._live(changed, now, len(self.worlds))
+        return changed
+
+    def _is_as_good(self, changed: Racer, now: Racer, floor: float) -> bool:
+        for upto in heats(len(self.worlds)):
+            self._live(changed, now, upto)
+            if Racer(now.rules, now.episodes[:upto]).beats(changed):
+                return False
+        success, reward = changed.standing
+        return success >= now.standing[0] and reward >= floor
+
+    def _live(self, changed: Racer, now: Racer, upto: int) -> None:
+        """Its episodes in so many worlds, but for those that it has."""
         what = f"making it plain: rules {len(now.rules)}, conditions {now.rules.conditions}"
 
         def told(_: str, done: int, of: int) -> None:
             self.tell(what, done, of)
 
-        changed = Racer(change(now.rules))
-        if touched(changed.rules, now) > RARE * len(self.worlds):
-            return now
-        for upto in heats(len(self.worlds)):
-            more = self.worlds[len(changed.episodes) : upto]
+        more = self.worlds[len(changed.episodes) : upto]
+        if more:
             heat([changed], now, more, self.workers, told)
-            if Racer(now.rules, now.episodes[:upto]).beats(changed):
-                return now
-        success, reward = changed.standing
-        return changed if success >= now.standing[0] and reward >= floor else now
 
 
 def compacted(best: Racer, trials: Trials) -> Racer:

@@ -3,6 +3,7 @@
 training.json     what is trained, and how
 scenario.specc    the scenario as it was, with the arbiter as it was
 checkpoint.npz    all that was lived, and each policy, to go on from
+trials.json       who won the last race, and what trials said since, until it is done
 ...               the arbiter with its rules, curves and the summary, once it is done
 """
 
@@ -10,6 +11,7 @@ import dataclasses
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, final
 
@@ -25,10 +27,12 @@ from specc.origins import renamed
 from specc.training.checkpoint import CHECKPOINT, keep, taken_up
 from specc.training.course import Course
 from specc.training.episode import trained_arbiter, training_of
+from specc.training.remembered import Remembered
 from specc.training.settings import Settings
 
 TRAINING: Final = "training.json"
 SCENARIO: Final = "scenario.specc"
+TRIALS: Final = "trials.json"
 SUMMARY: Final = "summary.txt"
 RECORD: Final = "summary.json"
 CURVES: Final = "curves.svg"
@@ -62,7 +66,7 @@ def begin_in(folder: Path, begun: Begun, scenario: Scenario) -> None:
     if (folder / TRAINING).exists():
         remedy = f"`specc train --resume -o {folder}` goes on with it; or name another folder"
         raise fault("V411", folder, "this folder holds a training already", remedy)
-    names = (SCENARIO, CHECKPOINT, *RESULTS, arbiter_name(scenario))
+    names = (SCENARIO, CHECKPOINT, TRIALS, *RESULTS, arbiter_name(scenario))
     refuse_taken([folder / name for name in names], "V414", "training")
     write_atomically(folder / SCENARIO, to_bytes(scenario))
     beside = os.path.relpath(begun.scenario, folder)
@@ -123,6 +127,27 @@ def keep_in(folder: Path | None, course: Course) -> None:
         keep(course, folder / CHECKPOINT)
 
 
+def remembered_in(folder: Path | None) -> Remembered:
+    """What the end of the training found out so far, which keeps what is found out now.
+
+    Raises:
+        SpecError: what is kept can't be read (V412).
+        OSError: it can't be read.
+    """
+    if folder is None:
+        return Remembered()
+    path = folder / TRIALS
+    found = record_in(path, "V412", "list of trials", _remembered_of) if path.exists() else None
+    found = found or Remembered()
+    found.keep = partial(_keep_trials, path)
+    return found
+
+
+def forget_trials(folder: Path) -> None:
+    """What trials said is of no use once the training is done."""
+    (folder / TRIALS).unlink(missing_ok=True)
+
+
 def is_finished(folder: Path, scenario: Scenario) -> bool:
     """Whether everything is there that a training leaves."""
     return all((folder / name).exists() for name in (arbiter_name(scenario), *RESULTS))
@@ -131,6 +156,25 @@ def is_finished(folder: Path, scenario: Scenario) -> bool:
 def arbiter_name(scenario: Scenario) -> str:
     """The file of the arbiter that is trained, in the folder."""
     return Path(trained_arbiter(scenario).source.file).name
+
+
+def _keep_trials(path: Path, found: Remembered) -> None:
+    record = {"version": VERSION, "winner": found.winner, "trials": found.trials}
+    write_atomically(path, json_bytes(record))
+
+
+def _remembered_of(record: Mapping[str, Any]) -> Remembered:
+    """What a record says.
+
+    Raises:
+        AttributeError, KeyError, TypeError, ValueError: it is no record of this version.
+    """
+    winner, trials = record["winner"], record["trials"]
+    if record["version"] != VERSION:
+        raise ValueError("it is of another version")
+    if type(winner) is not int or any(type(each) is not bool for each in trials):
+        raise TypeError("'winner' is a place, and each of 'trials' true or false")
+    return Remembered(winner, list(trials))
 
 
 def _begun_of(record: Mapping[str, Any]) -> Begun:

@@ -6,7 +6,8 @@ from typing import Final, final
 
 from runtime.progress import Progress
 from specc.training.course import Course, Generation
-from specc.training.race import Racer, raced
+from specc.training.race import Racer, heat, raced
+from specc.training.remembered import Remembered
 from specc.training.settings import Settings
 from specc.training.training import choosing_worlds
 from specc.training.workers import Workers
@@ -25,8 +26,14 @@ class LastRace:
     worlds: Sequence[int]
 
 
-def last_race(course: Course, settings: Settings, workers: Workers, tell: Progress) -> LastRace:
-    """The best list of all generations.
+def last_race(
+    course: Course,
+    settings: Settings,
+    workers: Workers,
+    tell: Progress,
+    remembered: Remembered,
+) -> LastRace:
+    """The best list of all generations; one that is remembered lives its own part once more.
 
     The race is longer than those before, in worlds of its own. A list that did not beat the best of
     its time for sure runs again: it may well be better.
@@ -36,10 +43,16 @@ def last_race(course: Course, settings: Settings, workers: Workers, tell: Progre
     """
     every, after = course.generations, len(course.generations)
     worlds = [each for i in range(LAST) for each in choosing_worlds(after + i, settings)]
+    if remembered.winner is not None:
+        best = every[remembered.winner]
+        winner = Racer(best.rules)
+        heat([winner], None, worlds, workers, tell)
+        return LastRace(best, winner, worlds)
     champion = course.champion.rules
     others = [each.rules for each in every if each.rules is not champion]
     race = raced(champion if others else None, others or [champion], worlds, workers, tell)
     contenders = [race.challenger, *([] if race.holder is None else [race.holder])]
     winner = max(contenders, key=lambda racer: racer.standing)
-    best = next(each for each in every if each.rules is winner.rules)
-    return LastRace(best, winner, worlds)
+    place = next(i for i, each in enumerate(every) if each.rules is winner.rules)
+    remembered.won(place)
+    return LastRace(every[place], winner, worlds)

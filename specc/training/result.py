@@ -30,6 +30,7 @@ from specc.training.folder import Begun
 from specc.training.judging import Judged, judged
 from specc.training.last_race import last_race
 from specc.training.pace import Pace, paced
+from specc.training.remembered import Remembered
 from specc.training.spelled import with_rules
 from specc.training.workers import Workers
 from specc.training.worlds import For, world
@@ -95,6 +96,7 @@ def concluded(
     course: Course,
     workers: Workers,
     tell: Progress,
+    remembered: Remembered,
 ) -> Trained:
     """What came of a training that is over.
 
@@ -105,14 +107,15 @@ def concluded(
         course: all that was lived and learnt.
         workers: live the episodes in which it is judged.
         tell: is told what is done, how much of it, and of how much.
+        remembered: what its end found out before it was interrupted.
 
     Raises:
         NoRoomError, UserCodeError, LearnerError, SpecError: as `go_on`.
     """
     clock = [perf_counter()]
-    race = last_race(course, begun.settings, workers, tell)
+    race = last_race(course, begun.settings, workers, tell, remembered)
     clock.append(perf_counter())
-    plain = compacted(race.winner, Trials(race.worlds, workers, tell))
+    plain = compacted(race.winner, Trials(race.worlds, workers, tell, remembered))
     clock.append(perf_counter())
     tell("learning from everything", 0, 1)
     lived = joined((*course.lived, *(each.steps for each in plain.episodes)))

@@ -13,7 +13,9 @@ import pytest
 from specc.cli import main
 from specc.loading import load_scenario
 from specc.training.checkpoint import taken_up
+from specc.training.compaction import Trials
 from specc.training.folder import Begun, begin_in
+from specc.training.race import Racer
 from specc.training.settings import Settings
 from tests.specc.training_scenes import FILES, SMALL, equal, written_in
 
@@ -181,6 +183,42 @@ def test_ctrl_c_in_the_end_says_that_all_was_lived(
         capsys.readouterr().err,
     )
     assert not (out / "choose.yaml").exists()
+
+
+def test_what_trials_said_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    out, peace = begun(settings=MORE, held_out=0), begun("peace", settings=MORE, held_out=0)
+    asked, last, said = 0, 0, Trials._is_as_good
+
+    def counted(trials: Trials, changed: Racer, now: Racer, floor: float) -> bool:
+        nonlocal asked
+        asked += 1
+        if asked == last:
+            raise KeyboardInterrupt
+        return said(trials, changed, now, floor)
+
+    monkeypatch.setattr(Trials, "_is_as_good", counted)
+    assert main(["train", "--resume", "-o", "peace"]) == 0
+    trials, asked, last = asked, 0, 3
+    assert main(RESUME) == 130
+    assert len(json.loads((out / "trials.json").read_text())["trials"]) == 2
+    asked, last = 0, -1
+    assert main(RESUME) == 0
+
+    assert asked == trials - 2
+    assert (out / "choose.yaml").read_bytes() == (peace / "choose.yaml").read_bytes()
+    one, other = (json.loads((each / "summary.json").read_text()) for each in (out, peace))
+    assert (one["final"], one["compaction"]) == (other["final"], other["compaction"])
+    assert not (out / "trials.json").exists()
+
+
+@pytest.mark.parametrize("text", ["{", '{"version": 1, "winner": 0}', '{"version": 2}', "[]"])
+def test_trials_that_can_not_be_read_are_refused(
+    text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (begun() / "trials.json").write_text(text)
+
+    assert main(RESUME) == 2
+    assert "trials.json: error[V412]: this is no list of trials" in capsys.readouterr().err
 
 
 def test_a_scenario_that_trains_nothing_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

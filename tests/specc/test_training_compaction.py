@@ -12,6 +12,7 @@ from runtime.progress import in_silence
 from runtime.scenario import Scenario
 from specc.training.compaction import Trials, compacted, touched
 from specc.training.race import Racer, heat, heats
+from specc.training.remembered import Remembered
 from specc.training.workers import Workers
 from tests.specc.training_scenes import equal, pen_in
 
@@ -39,7 +40,7 @@ def compacted_alone(rules: DecisionList, pen: Scenario) -> tuple[Racer, Racer]:
     """The list after its trials, and before."""
     with Workers(pen, 1) as workers:
         before = tried(rules, workers)
-        return compacted(before, Trials(WORLDS, workers, in_silence)), before
+        return compacted(before, Trials(WORLDS, workers, in_silence, Remembered())), before
 
 
 def test_rules_go_that_trials_do_not_need(pen: Scenario) -> None:
@@ -97,7 +98,7 @@ def test_what_matters_in_many_worlds_is_not_tried(pen: Scenario) -> None:
     told: list[object] = []
     with Workers(pen, 1) as workers:
         careful = tried(CAREFUL, workers)
-        trials = Trials(WORLDS, workers, lambda *of: told.append(of))
+        trials = Trials(WORLDS, workers, lambda *of: told.append(of), Remembered())
         same = trials.unless_worse(careful, lambda _: always(TURN, 1), -np.inf)
 
     assert same is careful
@@ -113,7 +114,7 @@ def test_a_trial_ends_when_the_change_is_surely_behind(
     with Workers(pen, 1) as workers:
         careful = Racer(CAREFUL)
         heat([careful], None, worlds, workers, in_silence)
-        trials = Trials(worlds, workers, lambda _what, done, _of: told.append(done))
+        trials = Trials(worlds, workers, lambda _what, done, _of: told.append(done), Remembered())
         same = trials.unless_worse(careful, lambda _: always(GO, 1), -np.inf)
 
     assert same is careful
@@ -124,7 +125,7 @@ def test_two_processes_make_it_as_plain_as_one(pen: Scenario) -> None:
     plain, _ = compacted_alone(CAREFUL.with_rule(0, GO, np.array([1.9]), FREE), pen)
     with Workers(pen, 2) as workers:
         wordy = tried(CAREFUL.with_rule(0, GO, np.array([1.9]), FREE), workers)
-        other = compacted(wordy, Trials(WORLDS, workers, in_silence))
+        other = compacted(wordy, Trials(WORLDS, workers, in_silence, Remembered()))
 
     assert equal(plain.rules, other.rules)
     assert plain.standing == other.standing

@@ -11,6 +11,7 @@ from runtime.scenario import Scenario
 from specc.training.course import Course, Generation, Took, Trial
 from specc.training.last_race import last_race
 from specc.training.race import LEFT, Racer, raced
+from specc.training.remembered import Remembered
 from specc.training.settings import Settings
 from specc.training.workers import Workers
 from tests.specc.training_scenes import pen_in
@@ -100,7 +101,7 @@ def test_the_best_of_all_generations_wins_the_last_race(pen: Scenario) -> None:
         for place, rules in enumerate(lists)
     )
     with Workers(pen, 1) as workers:
-        race = last_race(Course((), every), Settings(tried_in=4), workers, in_silence)
+        race = last_race(Course((), every), Settings(tried_in=4), workers, in_silence, Remembered())
 
     assert race.best is every[1]
     assert race.winner.rules is race.best.rules
