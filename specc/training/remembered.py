@@ -12,9 +12,10 @@ from typing import final
 @final
 @dataclass(slots=True)
 class Remembered:
-    """winner: of the last race, as the place of its generation; None before that is known.
+    """What is known of the last race and of the trials after it.
 
-    trials: of each, in their order, whether the change stays. keep: is called when there is more.
+    winner: the place of the generation whose list won; None before that is known. trials: of each,
+    in their order, whether the change stays. keep: is called when there is more.
     """
 
     winner: int | None = None

@@ -41,9 +41,11 @@ def share_of(agrees: Booleans, slowness: float, confidence: float) -> Share:
 
 def slowness_of(values: Array) -> float:
     """The integrated time of autocorrelation of `values` (T,), in samples; 1 for white noise."""
+    if values.size < 4:
+        return 1.0
     centred = values - values.mean()
     power = float(centred @ centred)
-    if power <= 0.0 or values.size < 4:
+    if power <= 0.0:
         return 1.0
     size = 1 << (2 * values.size - 1).bit_length()
     spectrum = np.fft.rfft(centred, size)

@@ -30,8 +30,10 @@ SEED: Final = 37
 
 
 def single_rules(arbiter: Arbiter) -> tuple[int, ...]:
-    """The places of the rules that an arbiter may lack: all but a last one that always holds."""
+    """The places of the rules that it may lack: not its only one, nor a last that always holds."""
     last = len(arbiter.rules) - 1
+    if not last:
+        return ()
     return tuple(k for k, rule in enumerate(arbiter.rules) if k < last or rule.when is not None)
 
 

@@ -160,5 +160,12 @@ def test_rules_that_hold_in_narrow_strips_are_missed_where_they_lack(strips: Arb
     assert "no readings were found at which one that lacks rule 3 chooses anything else" in told
 
 
+def test_the_only_rule_can_not_lack(strips: Arbiter) -> None:
+    found = bench_test(replace(strips, rules=strips.rules[:1]), PERIOD)
+
+    assert found is not None
+    assert (found.lacking, found.idle) == ((), ())
+
+
 def test_an_arbiter_that_reads_nothing_has_none(arbiter: Arbiter) -> None:
     assert bench_test(replace(arbiter, reads=()), PERIOD) is None
