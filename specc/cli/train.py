@@ -256,7 +256,7 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
     from specc.training.unlearnable import told_unlearnable
     from specc.training.workers import Workers
 
-    course, remembered = course_in(given.folder), remembered_in(given.folder)
+    course = course_in(given.folder)
     warmed_policies(begun.settings.learner)
 
     def keep(now: "Course") -> None:
@@ -274,6 +274,7 @@ def _run(begun: "Begun", scenario: "Scenario", text: "Loaded", given: Output) ->
         ):
             with shown_bar(scenario.name) as bar:
                 course = go_on(course, scenario, begun.settings, workers, bar.advance, keep)
+            remembered = remembered_in(given.folder, course)
             say(AFTERWARDS)
             with progress_bar(scenario.name) as tell:
                 trained = concluded(begun, scenario, text, course, workers, tell, remembered)

@@ -45,13 +45,13 @@ def shares_of(found: Explained) -> list[Share]:
 
 def shares_text(found: Explained) -> str:
     """A line for each choice, below a title."""
-    rules = f"by {word_of(found.arbiter)}"
-    rows = [("choice", "decisions", "stretches", rules)]
     shares = shares_of(found)
+    rows = [("choice", "decisions", "stretches", f"by {word_of(found.arbiter)}")]
     for each, part in zip(shares, percents([each.part for each in shares]), strict=True):
         by = ", ".join(map(str, each.rules))
         rows.append((each.choice, part, f"{each.stretches:,}", by))
-    return table(rows, INDENT)
+    is_by_rules = any(each.rules for each in shares)
+    return table(rows if is_by_rules else [row[:-1] for row in rows], INDENT)
 
 
 def shares_record(found: Explained) -> list[dict[str, Any]]:

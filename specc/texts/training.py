@@ -86,7 +86,7 @@ def _head(trained: Trained) -> str:
 def _plainer(trained: Trained, worlds: str) -> str:
     """What was given up of the best list, and what that cost where it was tried."""
     was, now, kept = trained.best.rules, trained.kept.rules, trained.kept
-    if not len(now):
+    if not len(now) and not len(was):
         always = trained.arbiter.choices[now.otherwise]
         return (
             f"no list did better than to choose {always} always: that succeeds in "
@@ -110,7 +110,7 @@ def _plainer(trained: Trained, worlds: str) -> str:
 
 def _ending(trained: Trained) -> str:
     settings, course = trained.begun.settings, trained.course
-    if not course.is_stale(settings):
+    if course.episodes >= settings.episodes or not course.is_stale(settings):
         return ""
     most, after = f"{settings.episodes:,}", counted(settings.patience, "race")
     return f" (it stopped before {most}: nothing beat the same list in {after})"

@@ -39,6 +39,8 @@ CURVES: Final = "curves.svg"
 RESULTS: Final = SUMMARY, RECORD, CURVES
 VERSION: Final = 1
 """Of the record of a training."""
+TRIALS_VERSION: Final = 1
+"""Of what trials said: one more whenever others are tried, or in another order."""
 
 
 @final
@@ -127,8 +129,10 @@ def keep_in(folder: Path | None, course: Course) -> None:
         keep(course, folder / CHECKPOINT)
 
 
-def remembered_in(folder: Path | None) -> Remembered:
+def remembered_in(folder: Path | None, course: Course) -> Remembered:
     """What the end of the training found out so far, which keeps what is found out now.
+
+    What was found of another course, or by other trials, is forgotten.
 
     Raises:
         SpecError: what is kept can't be read (V412).
@@ -136,10 +140,10 @@ def remembered_in(folder: Path | None) -> Remembered:
     """
     if folder is None:
         return Remembered()
-    path = folder / TRIALS
-    found = record_in(path, "V412", "list of trials", _remembered_of) if path.exists() else None
+    path, made = folder / TRIALS, partial(_remembered_of, course=course)
+    found = record_in(path, "V412", "list of trials", made) if path.exists() else None
     found = found or Remembered()
-    found.keep = partial(_keep_trials, path)
+    found.keep = partial(_keep_trials, path, course=course)
     return found
 
 
@@ -158,23 +162,30 @@ def arbiter_name(scenario: Scenario) -> str:
     return Path(trained_arbiter(scenario).source.file).name
 
 
-def _keep_trials(path: Path, found: Remembered) -> None:
-    record = {"version": VERSION, "winner": found.winner, "trials": found.trials}
-    write_atomically(path, json_bytes(record))
+def _keep_trials(path: Path, found: Remembered, course: Course) -> None:
+    said = {"winner": found.winner, "trials": found.trials}
+    write_atomically(path, json_bytes({"of": _of(course), **said}))
 
 
-def _remembered_of(record: Mapping[str, Any]) -> Remembered:
-    """What a record says.
+def _of(course: Course) -> list[int]:
+    """What trials are of: their version, and a course of so many generations and episodes."""
+    return [TRIALS_VERSION, len(course.generations), course.episodes]
+
+
+def _remembered_of(record: Mapping[str, Any], course: Course) -> Remembered | None:
+    """What a record says; None of one that is of another course.
 
     Raises:
-        AttributeError, KeyError, TypeError, ValueError: it is no record of this version.
+        AttributeError, KeyError, TypeError, ValueError: it is no such record.
     """
+    if record["of"] != _of(course):
+        return None
     winner, trials = record["winner"], record["trials"]
-    if record["version"] != VERSION:
-        raise ValueError("it is of another version")
-    if type(winner) is not int or any(type(each) is not bool for each in trials):
-        raise TypeError("'winner' is a place, and each of 'trials' true or false")
-    return Remembered(winner, list(trials))
+    if winner not in range(len(course.generations)) or type(trials) is not list:
+        raise ValueError("'winner' is the place of a generation, and 'trials' a list")
+    if any(type(each) is not bool for each in trials):
+        raise TypeError("each of 'trials' is true or false")
+    return Remembered(winner, trials)
 
 
 def _begun_of(record: Mapping[str, Any]) -> Begun:

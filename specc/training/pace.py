@@ -44,7 +44,7 @@ class _Commands(LastTicks):
 
 
 def paced(scenario: Scenario, tasks: Sequence[Task]) -> Pace:
-    """Live episodes, and the world's part of each alone; the first time loads what they need.
+    """Live episodes, and the world's part of each alone; the first twice, since it loads kernels.
 
     Raises:
         NoRoomError, UserCodeError, LearnerError: as `lived`.

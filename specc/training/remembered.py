@@ -21,7 +21,7 @@ class Remembered:
     winner: int | None = None
     trials: list[bool] = field(default_factory=list)
     keep: Callable[["Remembered"], None] = lambda _: None
-    _asked: int = 0
+    _asked: int = field(default=0, init=False)
 
     def won(self, winner: int) -> None:
         """The last race is over."""

@@ -211,7 +211,18 @@ def test_what_trials_said_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) ->
     assert not (out / "trials.json").exists()
 
 
-@pytest.mark.parametrize("text", ["{", '{"version": 1, "winner": 0}', '{"version": 2}', "[]"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        "[]",
+        '{"of": [1, 2, 29], "winner": 0}',
+        '{"of": [1, 2, 29], "winner": 2, "trials": []}',
+        '{"of": [1, 2, 29], "winner": -1, "trials": []}',
+        '{"of": [1, 2, 29], "winner": 0, "trials": ""}',
+        '{"of": [1, 2, 29], "winner": 0, "trials": [1]}',
+    ],
+)
 def test_trials_that_can_not_be_read_are_refused(
     text: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

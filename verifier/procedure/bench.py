@@ -5,7 +5,7 @@ through its range; where the choice changes, a reading below and one above that 
 that an arbiter with another threshold decides otherwise. Of rules, readings are added at which
 single ones matter, so that an arbiter that lacks one does. Each is shown for a while, since an
 arbiter may remember. How often all of it is repeated is the verifier's to say: until the spec
-itself passes in a rehearsal, and one that reads wrongly fails.
+itself passes in a rehearsal.
 """
 
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ import numpy as np
 
 from runtime.arbiter import Arbiter, Paradigm
 from runtime.arbitration.build import arbiter_of
-from runtime.arrays import Array, Integers
+from runtime.arrays import Array, Booleans, Integers
 from runtime.user_code import Callee, UserCodeError
 from verifier.arbitration.judging import AGREED, Arbitrated, judge_arbiter
 from verifier.arbitration.numbers import Decide, Running
@@ -132,9 +132,9 @@ class _Bench:
         """The share of decisions that must agree."""
         return AGREED if self.arbiter.agreement is None else self.arbiter.agreement.share
 
-    def chosen_last(self, rows: Array) -> Integers:
-        """What it has chosen at the end of each row (N,), -1 for nothing."""
-        return self.chosen(np.repeat(rows, self.ticks, axis=0))[self.ticks - 1 :: self.ticks]
+    def chosen_last(self, rows: Array, one: Arbiter | None = None) -> Integers:
+        """What it, or another one, has chosen at the end of each row (N,), -1 for nothing."""
+        return self.chosen(np.repeat(rows, self.ticks, axis=0), one)[self.ticks - 1 :: self.ticks]
 
     def running(self, one: Arbiter) -> Decide:
         """A fresh one that decides."""
@@ -184,6 +184,18 @@ class _Bench:
                     rows = np.concatenate([rows, readings[at : at + 1]])
                     counts += mattering_rules(self.arbiter, rows[-1:])[0]
         return rows
+
+    def matters(self, rows: Array) -> Booleans:
+        """At which of the rows (N, m), shown in their order, each of its single rules does: (N, R).
+
+        One that remembers may choose otherwise long after a rule held that another lacks.
+        """
+        if _forgets(self.arbiter):
+            return mattering_rules(self.arbiter, rows)
+        chosen = self.chosen_last(rows)
+        lacking = (without_rule(self.arbiter, place) for place in single_rules(self.arbiter))
+        columns = [chosen != self.chosen_last(rows, one) for one in lacking]
+        return np.array(columns, np.bool_).reshape(-1, len(rows)).T
 
     def _places(self) -> Array:
         """Rows, evenly over what can be read."""
@@ -270,7 +282,7 @@ class _Bench:
         if not self.is_rules:
             return (), ()
         rules = np.array(single_rules(self.arbiter), np.int64)
-        matters = mattering_rules(self.arbiter, rows).any(axis=0)
+        matters = self.matters(rows).any(axis=0)
         lacking = []
         for place in rules[matters].tolist():
             found = self._judged(rows, repeats, one=without_rule(self.arbiter, place))

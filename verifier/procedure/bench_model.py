@@ -52,8 +52,8 @@ class BenchTest:
 
     period: of its decisions. required: the share of decisions that must agree. never: choices that
     no reading that was tried leads to. verdict: of the verifier on the spec itself, rehearsed, for
-    `reasons`; biased, lacking: on others. idle: numbers of rules without which nothing that was
-    tried makes it choose anything else.
+    `reasons`; biased, lacking: on others. idle: numbers of rules without which all that is
+    shown makes it choose the same.
     """
 
     name: str

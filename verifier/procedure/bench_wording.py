@@ -62,7 +62,7 @@ def _lacking(test: BenchTest) -> Iterator[str]:
         yield f"one that lacks rule {_either(rules)} gets {verdict.upper()}{untold}"
     if test.idle:
         idle = _either(list(map(str, test.idle)))
-        yield f"no readings were found at which one that lacks rule {idle} chooses anything else"
+        yield f"one that lacks rule {idle} chooses the same at all of them"
 
 
 def _either(rules: list[str]) -> str:

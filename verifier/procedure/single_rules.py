@@ -25,6 +25,8 @@ MOST: Final = 12
 INSIDE: Final = (0.5, 0.25, 0.75)
 """Where between two thresholds a reading is drawn, the first as often as the others together."""
 OFTEN: Final = (0.5, 0.25, 0.25)
+EVEN: Final = 0.5
+"""As many are drawn so; the others anywhere, for rules over expressions of several readings."""
 DIGITS: Final = 3
 SEED: Final = 37
 
@@ -110,9 +112,10 @@ def _of_read(
     within = (cuts[:-1] >= low[0]) & (cuts[1:] <= high[0])
     below, above = cuts[:-1][within], cuts[1:][within]
     if not len(below):
-        return np.full(count, read.low), np.zeros(count)
+        return np.full(count, np.clip(low[0], read.low, read.high)), np.zeros(count)
     gap = chance.integers(0, len(below), count)
-    share = chance.choice(INSIDE, count, p=OFTEN)
+    is_even = chance.random(count) < EVEN
+    share = np.where(is_even, chance.choice(INSIDE, count, p=OFTEN), chance.random(count))
     exact = below[gap] + share * (above[gap] - below[gap])
     short = np.array([_short(value, read.unit.scale) for value in exact.tolist()])
     is_inside = (below[gap] < short) & (short < above[gap])

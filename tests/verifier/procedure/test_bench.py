@@ -9,12 +9,15 @@ import pytest
 
 from compiler.architecture.arbiters import compile_arbiter
 from runtime.arbiter import Arbiter
-from runtime.arrays import Array
+from runtime.arbitration.build import arbiter_of
+from runtime.arrays import Array, Integers
+from runtime.user_code import Callee
 from verifier.arbitration.judging import judge_arbiter
 from verifier.arbitration.reader import CHOICE
 from verifier.procedure.bench import bench_test
 from verifier.procedure.bench_model import BenchTest
 from verifier.procedure.bench_wording import bench_sentences
+from verifier.procedure.single_rules import without_rule
 from verifier.report.report import Verdict
 from verifier.traces.trace import TICKS, Series, Trace
 
@@ -157,7 +160,69 @@ def test_rules_that_hold_in_narrow_strips_are_missed_where_they_lack(strips: Arb
     assert found.decides
     told = bench_sentences(found)
     assert "one that lacks rule 1, 2 or 4 gets FAIL" in told
-    assert "no readings were found at which one that lacks rule 3 chooses anything else" in told
+    assert "one that lacks rule 3 chooses the same at all of them" in told
+
+
+HEAD = """specc: 1
+kind: arbiter
+name: tried
+reads:
+  ahead: {unit: m, domain: [0, 2]}
+  left: {unit: m, domain: [0, 2]}
+  bump: {unit: "1", domain: [0, 1]}
+choices: [flee, go]
+constants:
+  near: {value: 0.4, unit: m}
+  free: {value: 0.8, unit: m}
+  wide: {value: 1, unit: m}
+  least: {value: 1.1, unit: m}
+  most: {value: 1.17, unit: m}
+by:
+  rules:
+"""
+
+
+@pytest.mark.parametrize(
+    "rules",
+    [
+        [
+            "choose: flee, when: ahead < near, until: ahead > free",
+            "choose: flee, when: ahead < near, until: left > wide",
+        ],
+        ["choose: flee, when: bump >= 1", "choose: flee, when: ahead < near"],
+        ["choose: flee, when: ahead - left > least and ahead - left < most"],
+    ],
+    ids=["that last", "at the end of a domain", "of two readings together"],
+)
+def test_what_is_said_of_lacking_rules_is_what_such_arbiters_choose(
+    rules: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "tried.yaml"
+    lines = [f"    - {{{rule}}}\n" for rule in (*rules, "choose: go")]
+    path.write_text(HEAD + "".join(lines), encoding="utf-8")
+    arbiter = compile_arbiter(path).arbiter
+    found = bench_test(arbiter, PERIOD)
+    assert found is not None
+
+    rows = np.array([[each.values[n] for n in ("ahead", "left", "bump")] for each in found.shown])
+    rows = np.repeat(rows, round(found.seconds / PERIOD), axis=0)
+    whole = chosen_by(arbiter, rows)
+    for place in range(len(rules)):
+        differs = chosen_by(without_rule(arbiter, place), rows) != whole
+        assert differs.any() == (place + 1 not in found.idle)
+        assert differs.any() == any(each.rule == place + 1 for each in found.lacking)
+    assert found.lacking, "one rule at least is told apart"
+
+
+def chosen_by(arbiter: Arbiter, rows: Array) -> Integers:
+    """What a fresh one chooses at readings that are shown one after the other."""
+    made = arbiter_of(arbiter, "tried", PERIOD, _no_code)
+    made.reset(0)
+    return np.array([made.decide(row, PERIOD * k).argmax() for k, row in enumerate(rows)])
+
+
+def _no_code(_text: str) -> Callee:
+    raise AssertionError("no arbiter here is code")
 
 
 def test_the_only_rule_can_not_lack(strips: Arbiter) -> None:
