@@ -113,6 +113,19 @@ def test_how_often_each_was_chosen_is_told_as_the_recording_has_it(
     assert "\n  sharp_right   39 %       137        1\n" in text
 
 
+def test_an_arbiter_that_reads_nothing_is_explained(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = tmp_path / "run.mcap"
+    scenario = SPECS / "scenarios" / "light_random.yaml"
+    assert main(["simulate", str(scenario), "-d", "1 s", "-o", str(run)]) in {0, 1, 4}
+
+    capsys.readouterr()
+    told = out_of(capsys, "explain", run)
+    assert "by a competition of its choices" in told
+    assert "  by rule" not in told
+
+
 def test_stretches_follow_one_another_and_hold_all_decisions() -> None:
     (found,) = explain(LOG, KEEP_LEFT)
 

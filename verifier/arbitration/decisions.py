@@ -97,7 +97,8 @@ def _register(arbiter: Arbiter, trace: Trace, times: Array) -> tuple[Array, Bool
             held = trace.constants.get(control.name, control.default)
             columns.append(np.full(times.shape, held))
     columns += [np.full(times.shape, constant.value) for constant in arbiter.constants]
-    return np.stack(columns, axis=1), known
+    register = np.stack(columns, axis=1) if columns else np.zeros((len(times), 0))
+    return register, known
 
 
 def _latest(series: Series, times: Array) -> tuple[Array, Booleans]:
