@@ -145,9 +145,10 @@ class _Bench:
     def chosen(self, rows: Array, one: Arbiter | None = None) -> Integers:
         """What it, or another one, chooses (N,) that is shown rows (N, m) one after the other."""
         one = one or self.arbiter
-        kinds, of_kind = np.unique(rows, axis=0, return_inverse=True)
-        if _forgets(one) and len(kinds) < len(rows):
-            return self.chosen(kinds, one)[of_kind.reshape(-1)]
+        if _forgets(one):
+            kinds, of_kind = np.unique(rows, axis=0, return_inverse=True)
+            if len(kinds) < len(rows):
+                return self.chosen(kinds, one)[of_kind.reshape(-1)]
         decide = self.running(one)
         controls = [control.default for control in self.arbiter.controls]
         found = np.full(len(rows), -1)

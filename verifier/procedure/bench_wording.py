@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from spec_schema.wording import listed as any_of
 from verifier.procedure.bench_model import BenchTest, Biased, Shown
 from verifier.report.report import Verdict
 from verifier.report.wording import exact, listed, number, often, percent, quantity, seconds
@@ -59,15 +60,10 @@ def _lacking(test: BenchTest) -> Iterator[str]:
         by_verdict.setdefault(each.verdict, []).append(str(each.rule))
     for verdict, rules in by_verdict.items():
         untold = "" if verdict is Verdict.FAIL else ": these readings do not tell it apart for sure"
-        yield f"one that lacks rule {_either(rules)} gets {verdict.upper()}{untold}"
+        yield f"one that lacks rule {any_of(rules, last='or')} gets {verdict.upper()}{untold}"
     if test.idle:
-        idle = _either(list(map(str, test.idle)))
+        idle = any_of(map(str, test.idle), last="or")
         yield f"one that lacks rule {idle} chooses the same at all of them"
-
-
-def _either(rules: list[str]) -> str:
-    *most, last = rules
-    return f"{', '.join(most)} or {last}" if most else last
 
 
 def _never(test: BenchTest) -> Iterator[str]:

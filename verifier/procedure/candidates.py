@@ -95,11 +95,12 @@ def _spread(program: Program, part: State | Control, share: Array, fidelity: Fid
         return values
     half = 1.0 if is_guarding else 2.0
     place = np.floor(np.mod(share * SHUFFLES, 1.0) * half * len(levels)).astype(np.int64)
-    told = np.array([_three_digits(each, part.unit.scale) for each in levels])
+    told = np.array([three_digits(each, part.unit.scale) for each in levels])
     return np.where(place < len(levels), told[place % len(levels)], values)
 
 
-def _three_digits(value: float, scale: float) -> float:
+def three_digits(value: float, scale: float) -> float:
+    """A value (SI) in three digits of its own unit."""
     return float(f"{value / scale:.3g}") * scale
 
 

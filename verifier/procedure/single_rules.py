@@ -17,6 +17,7 @@ from verifier.deciding.boxes import HIGHEST, LOWEST, Box, boxes_of
 from verifier.deciding.conditions import condition_of
 from verifier.deciding.reading import values_of
 from verifier.deciding.rulings import register_at, rulings_at
+from verifier.procedure.candidates import three_digits
 
 DRAWN: Final = 4096
 """Readings that are drawn for each rule."""
@@ -27,7 +28,6 @@ INSIDE: Final = (0.5, 0.25, 0.75)
 OFTEN: Final = (0.5, 0.25, 0.25)
 EVEN: Final = 0.5
 """As many are drawn so; the others anywhere, for rules over expressions of several readings."""
-DIGITS: Final = 3
 SEED: Final = 37
 
 
@@ -47,12 +47,9 @@ def without_rule(arbiter: Arbiter, place: int) -> Arbiter:
 
 def mattering_rules(arbiter: Arbiter, rows: Array) -> Booleans:
     """At which readings (N, m) each of its single rules matters: (N, R)."""
-    register = np.tile(register_at(arbiter, {}), (len(rows), 1))
-    for column, read in enumerate(arbiter.reads):
-        register[:, arbiter.register.index(read.name)] = rows[:, column]
-    chosen = _chosen(arbiter, register)
+    chosen = _chosen(arbiter, rows)
     lacking = (without_rule(arbiter, place) for place in single_rules(arbiter))
-    columns = [chosen != _chosen(each, register) for each in lacking]
+    columns = [chosen != _chosen(each, rows) for each in lacking]
     return np.stack(columns, axis=1) if columns else np.zeros((len(rows), 0), np.bool_)
 
 
@@ -64,17 +61,20 @@ def own_readings(arbiter: Arbiter) -> tuple[Array, ...]:
     cuts = [_cuts(read, every) for read in arbiter.reads]
     chance = np.random.Generator(np.random.Philox(SEED))
     found = []
-    for column, place in enumerate(single_rules(arbiter)):
+    for place in single_rules(arbiter):
         rows, gaps = _drawn(arbiter.reads, cuts, known[place] or ({},), chance)
-        good = mattering_rules(arbiter, rows)[:, column]
+        good = _chosen(arbiter, rows) != _chosen(without_rule(arbiter, place), rows)
         order = np.argsort(-gaps[good], kind="stable")
         kept = list(dict.fromkeys(map(tuple, rows[good][order].tolist())))[:MOST]
         found.append(np.array(kept).reshape(-1, len(arbiter.reads)))
     return tuple(found)
 
 
-def _chosen(arbiter: Arbiter, register: Array) -> Integers:
-    """What is chosen (N,) where no rule has held before."""
+def _chosen(arbiter: Arbiter, rows: Array) -> Integers:
+    """What is chosen (N,) at readings (N, m) where no rule has held before."""
+    register = np.tile(register_at(arbiter, {}), (len(rows), 1))
+    for column, read in enumerate(arbiter.reads):
+        register[:, arbiter.register.index(read.name)] = rows[:, column]
     return np.array([each.choices[-1] for each in rulings_at(arbiter, register)])
 
 
@@ -117,12 +117,7 @@ def _of_read(
     is_even = chance.random(count) < EVEN
     share = np.where(is_even, chance.choice(INSIDE, count, p=OFTEN), chance.random(count))
     exact = below[gap] + share * (above[gap] - below[gap])
-    short = np.array([_short(value, read.unit.scale) for value in exact.tolist()])
+    short = np.array([three_digits(value, read.unit.scale) for value in exact.tolist()])
     is_inside = (below[gap] < short) & (short < above[gap])
     widths = (above[gap] - below[gap]) / (read.high - read.low)
     return np.where(is_inside, short, exact), widths
-
-
-def _short(value: float, scale: float) -> float:
-    """In few digits of its unit."""
-    return float(f"{value / scale:.{DIGITS}g}") * scale
