@@ -166,9 +166,8 @@ def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -
     for node in walk(condition):
         if not isinstance(node, Apply) or node.mark != (fault.start, fault.end):
             continue
-        units = [
-            known[o.name].unit for o in node.operands if isinstance(o, Name) and o.name in known
-        ] or _units_of(node.operands, known)
+        named = [o.name for o in node.operands if isinstance(o, Name) and o.name in known]
+        units = [known[name].unit for name in named] or _units_of(node.operands, known)
         if len(units) != 1 or units[0] in {"", "1"}:
             continue
         for operand in node.operands:
@@ -178,8 +177,7 @@ def _in_its_unit(fault: Fault, condition: Expr, known: Mapping[str, Measured]) -
                 )
                 return replace(fault, help=remedy)
             if isinstance(operand, Name) and is_quantity(operand.name):
-                names = (o.name for o in node.operands if isinstance(o, Name) and o.name in known)
-                owner = next(names, "the other side")
+                owner = named[0] if named else "the other side"
                 return replace(
                     fault, help=f"{owner} is in {units[0]}: write a number in {units[0]}"
                 )
